@@ -1,0 +1,37 @@
+#pragma once
+// Unevenness of the time-averaged density n_b over the N_b bins of a grid between the wall surfaces, n their mean:
+//
+//   paper   (1/N_b) sqrt(sum_b (n_b - n)^2)      (Phan-Thien et al. 2016, eq. 49)
+//   thesis  sqrt(sum_b (n_b - n)^2 / N_b)        (Nguyen 2021, eq. 3.41)
+//
+// Both contain sampling noise that falls with the averaging time: compare runs of the same length, and subtract the
+// value at rest.
+#include "odpd/analysis/block_average.h"
+#include "odpd/analysis/observer.h"
+
+namespace odpd {
+
+template <int D>
+class DensityResidual : public Observer<D> {
+ public:
+  /// bins: D counts.
+  DensityResidual(ObserverSettings settings, std::array<std::int64_t, static_cast<std::size_t>(D)> bins,
+                  const Scene<D>& scene);
+  void measure(const Clock& clock, const Particles<D>& particles, const StepRecord<D>& record) override;
+  void add_results(Results& results) const override;
+  std::vector<std::string> series_columns() const override { return {"paper_instant", "thesis_instant"}; }
+  std::vector<double> series_row() const override { return newest_; }
+  void save(StateWriter& out) const override { average_.save(out, "average"); }
+  void load(const StateReader& in) override { average_.load(in, "average"); }
+
+ private:
+  double thesis_residual(std::span<const double> counts) const;
+
+  std::array<std::int64_t, static_cast<std::size_t>(D)> bins_;
+  const Scene<D>& scene_;
+  double bin_volume_;
+  BlockAverage average_;
+  std::vector<double> newest_;
+};
+
+}  // namespace odpd

@@ -1,0 +1,55 @@
+#pragma once
+// Profiles across bins along one axis between the wall surfaces (or the box), from the time averages (Phan-Thien et
+// al. 2016, eq. 8-9)
+//
+//   density  n_b = <N_b>/V_b,   velocity  u_b = <sum_{i in b} v_i>/<N_b>   with v_mid at the middle of the step's path,
+//   configurational temperature  <sum |F_i|^2>/<sum lap_i U>
+//
+// and a least-squares fit of one velocity component over the bins between `fit_from` and `fit_to`:
+//   linear    u = u_0 + slope x; with two walls also slope_ratio = slope H/(U_high - U_low) and the slip length
+//             b = ((U_high - U_low)/slope - H)/2 with H the distance between the wall surfaces
+//   parabola  u = c_0 + c_1 x + c_2 x^2; with a body force f also the viscosity n f/(-2 c_2), n over the fitted bins,
+//             and the slip length from where the parabola reaches the walls' velocity
+#include "odpd/analysis/block_average.h"
+#include "odpd/analysis/observer.h"
+
+namespace odpd {
+
+enum class ProfileFit { none, linear, parabola };
+
+struct ProfileSettings {
+  int axis = 1;
+  std::int64_t bins = 20;
+  ProfileFit fit = ProfileFit::none;
+  int component = 0;                    ///< of velocity, for the fit
+  double fit_from = 0.0, fit_to = 0.0;  ///< coordinates; bins whose centres lie between are fitted
+};
+
+template <int D>
+class Profile : public Observer<D> {
+ public:
+  Profile(ObserverSettings settings, ProfileSettings profile, const Scene<D>& scene);
+  void measure(const Clock& clock, const Particles<D>& particles, const StepRecord<D>& record) override;
+  void add_results(Results& results) const override;
+  std::vector<std::string> series_columns() const override;
+  std::vector<double> series_row() const override;
+  void save(StateWriter& out) const override { average_.save(out, "average"); }
+  void load(const StateReader& in) override { average_.load(in, "average"); }
+
+ private:
+  // Columns of a bin: count, D velocity sums, |F|^2, laplacian.
+  static constexpr std::size_t width = D + 3;
+  std::size_t column(std::size_t bin, std::size_t k) const { return bin * width + k; }
+  std::int64_t bin_of(const Vec<D>& r) const;
+  double centre(std::size_t bin) const;
+  Table table() const;
+  void add_fit(Results& results, Chart& chart) const;
+
+  ProfileSettings profile_;
+  const Scene<D>& scene_;
+  double low_, high_;
+  BlockAverage average_;
+  std::vector<double> newest_;
+};
+
+}  // namespace odpd

@@ -1,0 +1,60 @@
+#pragma once
+// A case file as the program sees it: what to integrate, with which solver, for how long, what to write and to check.
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "odpd/core/config.h"
+#include "odpd/dynamics/clock.h"
+#include "odpd/dynamics/dynamics.h"
+#include "odpd/scene/scene_settings.h"
+#include "odpd/solvers/solver.h"
+
+namespace odpd {
+
+/// [output]: intervals in steps, 0 for never.
+struct OutputSettings {
+  std::int64_t checkpoint_every = 1000;
+  std::int64_t trajectory_every = 100;
+  std::int64_t vtk_every = 0;
+  bool pictures = true;
+};
+
+/// One [[check]]: an observable against what it should be.
+struct CheckSettings {
+  std::string name;
+  std::string observable;
+  double expected = 0.0;
+  double tolerance = 0.0;           ///< absolute; the check passes when |measured - expected| <= tolerance
+  double standard_error_below = 0;  ///< also asked of the standard error, where > 0
+  std::string source;
+};
+
+struct CaseSettings {
+  std::string name;                 ///< of the case directory or file
+  std::string title;
+  int dimension = 2;
+  std::string integrator;
+  Clock clock;
+  SolverOptions solver;
+  DynamicsSettings dynamics;
+  OutputSettings output;
+  std::vector<CheckSettings> checks;
+};
+
+/// Opens a case: a directory that holds case.toml, or a .toml file. Throws ConfigError.
+Config open_case(const std::filesystem::path& path, const std::vector<std::string>& overrides);
+/// Name for `runs/<name>`: of the directory, or of the file without .toml.
+std::string case_name(const std::filesystem::path& path);
+/// Reads title, dimension, [integrator], [solver], [neighbours], [run], [output] and [[check]].
+CaseSettings read_case(const Config& config, const std::string& name);
+/// Fills start_positions and start_species from the start file (CSV or H5MD), where the scene has one.
+template <int D>
+void read_start_file(SceneSettings<D>& scene);
+
+/// The values that a restart must find unchanged: all but title, run.duration, [solver], [output] and [[check]].
+std::vector<std::pair<std::string, std::string>> fixed_values(const Config& config);
+
+}  // namespace odpd

@@ -1,0 +1,40 @@
+#pragma once
+// The end of a run: what was asked, what came out, what was expected, and where the time went.
+#include <string>
+#include <vector>
+
+#include "odpd/analysis/results.h"
+#include "odpd/app/case.h"
+#include "odpd/app/simulation.h"
+
+namespace odpd {
+
+struct CheckOutcome {
+  CheckSettings check;
+  double measured = 0.0;
+  double standard_error = 0.0;
+  bool passed = false;
+  std::string why;  ///< of a failure
+};
+
+/// A check whose observable no observer gave fails, naming those there are.
+std::vector<CheckOutcome> evaluate_checks(const std::vector<CheckSettings>& checks, const Results& results,
+                                          std::int64_t alarm_crossings);
+
+/// What a run was, beside the simulation itself.
+struct RunFacts {
+  double wall_seconds = 0.0;
+  bool interrupted = false;
+  int threads = 1;
+};
+
+template <int D>
+std::string summary_json(const Simulation<D>& simulation, const Results& results,
+                         const std::vector<CheckOutcome>& checks, const RunFacts& facts);
+template <int D>
+std::string report_text(const Simulation<D>& simulation, const Results& results,
+                        const std::vector<CheckOutcome>& checks, const RunFacts& facts);
+/// "1.2345 +- 0.0067": digits by the error.
+std::string with_error(double value, double standard_error);
+
+}  // namespace odpd

@@ -1,0 +1,60 @@
+#pragma once
+// The files of a run, in one directory:
+//
+//   case.toml            the resolved case           summary.json       numbers, checks, timings
+//   <observer>.csv       tables                      <observer>_series.csv   time series on request
+//   *.svg, *.png, *.gp   pictures and their gnuplot scripts
+//   trajectory.NNNN.h5   H5MD segments               particles.pvd, frames/*.vtp   for ParaView
+//   checkpoint.h5        everything needed to continue, bit for bit
+//
+// A kill loses nothing but what came after the last checkpoint: files are written whole and renamed, and series are cut
+// back to the checkpoint at a restart.
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "odpd/app/simulation.h"
+#include "odpd/io/csv.h"
+#include "odpd/io/trajectory.h"
+
+namespace odpd {
+
+/// Makes `directory` ready for a new run: an earlier run there is moved aside to `<directory>.N`. Throws IoError when a
+/// file, or a directory that is no run of odpd and not empty, is in the way.
+void prepare_run_directory(const std::filesystem::path& directory);
+
+template <int D>
+class RunOutput {
+ public:
+  RunOutput(std::filesystem::path directory, const Config& config, Simulation<D>& simulation);
+
+  /// Starts all files anew and writes case.toml.
+  void begin();
+  /// Continues the files of this directory from what the checkpoint says of them.
+  void resume(CheckpointReader& in);
+  /// Series, trajectory, VTK and checkpoint as they are due after the step just done.
+  void after_step();
+  /// A checkpoint of this moment, with all files flushed up to it first.
+  void checkpoint();
+  /// Writes what is buffered, as far as possible: for the way out after an error.
+  void salvage() noexcept;
+  /// The last frame for ParaView, tables and pictures.
+  void finish(const Results& results);
+
+  const std::filesystem::path& directory() const { return directory_; }
+
+ private:
+  std::filesystem::path series_path(std::size_t k) const;
+  void write_vtk_frame();
+
+  std::filesystem::path directory_;
+  const Config& config_;
+  Simulation<D>& simulation_;
+  TrajectorySegments trajectory_;
+  std::vector<std::unique_ptr<SeriesFile>> series_;  // one per observer, null where none was asked for
+  std::vector<std::pair<double, std::string>> vtk_frames_;
+};
+
+}  // namespace odpd

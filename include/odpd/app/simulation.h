@@ -1,0 +1,58 @@
+#pragma once
+// A case put together: scene, dynamics, integrator, clock and observers, and the loop that drives them.
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "odpd/analysis/observer.h"
+#include "odpd/app/case.h"
+#include "odpd/dynamics/integrator.h"
+#include "odpd/io/checkpoint_file.h"
+#include "odpd/io/frame.h"
+#include "odpd/scene/scene.h"
+
+namespace odpd {
+
+template <int D>
+class Simulation {
+ public:
+  /// Builds everything the case names and rejects keys that nobody read. Throws ConfigError, IoError.
+  Simulation(const Config& config, CaseSettings settings);
+
+  const CaseSettings& settings() const { return settings_; }
+  const Clock& clock() const { return clock_; }
+  Scene<D>& scene() { return scene_; }
+  Dynamics<D>& dynamics() { return dynamics_; }
+  const Dynamics<D>& dynamics() const { return dynamics_; }
+  const Scene<D>& scene() const { return scene_; }
+  const Integrator<D>& integrator() const { return *integrator_; }
+  const std::vector<std::unique_ptr<Observer<D>>>& observers() const { return observers_; }
+
+  /// One step and the measurements that are due after it.
+  const StepRecord<D>& step();
+  /// Steps until the clock has run out or `stop()` says so; `after_step` writes what is due.
+  void run(const std::function<bool()>& stop, const std::function<void()>& after_step);
+
+  Frame frame() const;
+  Results results() const;
+  /// Particles the mirror caught during the measured part: every check fails when there were any.
+  std::int64_t alarm_crossings() const { return alarm_crossings_; }
+
+  void save(CheckpointWriter& out) const;
+  /// Continues from a checkpoint of the same case. Throws ConfigError naming the first value that differs.
+  void load(CheckpointReader& in);
+
+ private:
+  Config config_;
+  CaseSettings settings_;
+  Clock clock_;
+  Scene<D> scene_;
+  Dynamics<D> dynamics_;
+  std::unique_ptr<Integrator<D>> integrator_;
+  std::vector<std::unique_ptr<Observer<D>>> observers_;
+  std::int64_t alarm_crossings_ = 0;
+};
+
+}  // namespace odpd

@@ -1,0 +1,38 @@
+#pragma once
+// Errors the library throws. Each message names what was wrong, where, and the remedy;
+// only the program's main turns one into text on stderr and an exit code.
+#include <stdexcept>
+#include <string>
+
+namespace odpd {
+
+/// Root of every error odpd throws. `exit_code` is what the program returns for it.
+class Error : public std::runtime_error {
+ public:
+  Error(const std::string& message, int exit_code)
+      : std::runtime_error(message), exit_code_(exit_code) {}
+  int exit_code() const { return exit_code_; }
+
+ private:
+  int exit_code_;
+};
+
+/// A case file, option or argument is wrong (exit code 1).
+class ConfigError : public Error {
+ public:
+  explicit ConfigError(const std::string& message) : Error(message, 1) {}
+};
+
+/// A linear solve failed or the physics left its range: not converged, singular, NaN (exit code 2).
+class SolverError : public Error {
+ public:
+  explicit SolverError(const std::string& message) : Error(message, 2) {}
+};
+
+/// A file could not be read or written (exit code 3).
+class IoError : public Error {
+ public:
+  explicit IoError(const std::string& message) : Error(message, 3) {}
+};
+
+}  // namespace odpd

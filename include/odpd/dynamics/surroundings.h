@@ -1,0 +1,43 @@
+#pragma once
+// What a scene imposes on the particles, as the dynamics sees it: external potentials and forces, the prescribed
+// motion of particles with known velocity, and the mirror that catches what should never arrive there.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "odpd/particles/particles.h"
+
+namespace odpd {
+
+template <int D>
+class Surroundings {
+ public:
+  virtual ~Surroundings() = default;
+  /// Adds the forces of potentials (smooth walls) on free particles.
+  virtual void add_potential_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
+                                    std::vector<Vec<D>>& force) const = 0;
+  /// Energy of the potentials, and their Laplacian added per particle (for the configurational temperature).
+  virtual double potential_energy(const Particles<D>& particles, std::span<const Vec<D>> positions,
+                                  std::vector<double>& laplacian) const = 0;
+  /// Adds driving forces (body force) at time t on free particles.
+  virtual void add_driving_forces(const Particles<D>& particles, double t, std::vector<Vec<D>>& force) const = 0;
+  /// Velocity at time t of the particles of `group` >= 1.
+  virtual Vec<D> known_velocity(std::int32_t group, double t) const = 0;
+  /// Mirrors a free particle that left the box in a bounded direction back into it; true when it had.
+  virtual bool confine(Vec<D>& r) const = 0;
+};
+
+/// A fully periodic scene without driving.
+template <int D>
+class NoSurroundings : public Surroundings<D> {
+ public:
+  void add_potential_forces(const Particles<D>&, std::span<const Vec<D>>, std::vector<Vec<D>>&) const override {}
+  double potential_energy(const Particles<D>&, std::span<const Vec<D>>, std::vector<double>&) const override {
+    return 0.0;
+  }
+  void add_driving_forces(const Particles<D>&, double, std::vector<Vec<D>>&) const override {}
+  Vec<D> known_velocity(std::int32_t, double) const override { return {}; }
+  bool confine(Vec<D>&) const override { return false; }
+};
+
+}  // namespace odpd

@@ -1,0 +1,29 @@
+#pragma once
+// Forces on particles from their edges. Each particle adds up its own edges in fixed order: the same bits on any
+// thread count.
+#include <span>
+#include <vector>
+
+#include "odpd/pairs/network.h"
+
+namespace odpd {
+
+/// force[p] += sum over edges of p of (+-) edge_force, with + where p is i; edge_force: on i, one per edge.
+template <int D>
+void add_edge_forces(const PairNetwork<D>& network, std::span<const Vec<D>> edge_force,
+                     std::vector<Vec<D>>& force);
+
+/// force[p] += conservative forces f_c e.
+template <int D>
+void add_conservative_forces(const PairNetwork<D>& network, std::vector<Vec<D>>& force);
+
+/// force[p] -= (R v)_p, friction with the physical zeta for the velocities of all particles.
+template <int D>
+void add_friction_forces(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
+                         std::vector<Vec<D>>& force);
+
+/// laplacian[p] += sum over edges of k_c - (D - 1) f_c / r: the pair part of the Laplacian of U in r_p.
+template <int D>
+void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian);
+
+}  // namespace odpd

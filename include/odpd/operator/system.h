@@ -1,0 +1,75 @@
+#pragma once
+// A x = b as solvers see it: A = P^T R P + diagonal shift, symmetric positive (semi)definite,
+// flat vectors of `nodes * block_size` doubles, node by node.
+//
+// The problem to solve is one of three (design of the null space, Phan-Thien et al. 2016, sec. 3.2):
+//   regular      A is definite:                      A x = b
+//   null space   A E = 0 for the translations E:     A x = Pi b,  E^T x = 0,   Pi = I - E (E^T E)^-1 E^T
+//   held         A definite, centre of mass held:    Pi A x = Pi b,  E^T x = 0  (the exact problem of Scheme 2)
+// In all of them the true relative residual is |Pi (b - A x)| / |Pi b| with Pi = I for the regular one.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "odpd/operator/block_csr.h"
+
+namespace odpd {
+
+class System {
+ public:
+  virtual ~System() = default;
+
+  virtual int block_size() const = 0;      ///< unknowns per node
+  virtual std::int64_t nodes() const = 0;  ///< number of nodes
+  std::int64_t size() const { return nodes() * block_size(); }
+
+  /// y = A x; the same bits on any thread count. Sizes: size().
+  virtual void apply(std::span<const double> x, std::span<double> y) const = 0;
+  /// Diagonal blocks of A, row-major, nodes * b * b values.
+  virtual void block_diagonal(std::span<double> blocks) const = 0;
+  /// A assembled, made on first demand and kept until the generation changes.
+  virtual const BlockCsr& matrix() const = 0;
+
+  /// Positions of the nodes (nodes * space_dimension(), may be empty) and how many directions are periodic:
+  /// with these a solver builds the near-null space (translations; rotations only when none is periodic).
+  virtual std::span<const double> positions() const = 0;
+  virtual int space_dimension() const = 0;
+  virtual int periodic_directions() const = 0;
+
+  /// Translations are in the null space (nothing with known velocity holds the fluid, no shift).
+  virtual bool translations_are_null() const = 0;
+  /// The centre of mass is to be held still although A is definite (the constrained problem).
+  virtual bool holds_centre_of_mass() const = 0;
+  bool projected() const { return translations_are_null() || holds_centre_of_mass(); }
+
+  /// Changes whenever A changes.
+  virtual std::uint64_t generation() const = 0;
+};
+
+/// Removes the mean of each of the `block` components: x := Pi x. Fixed summation order.
+void remove_mean(std::span<double> x, int block);
+
+/// A System around an assembled matrix: toys in tests, matrices from elsewhere.
+class AssembledSystem : public System {
+ public:
+  explicit AssembledSystem(BlockCsr matrix, bool translations_are_null = false,
+                           bool holds_centre_of_mass = false);
+  int block_size() const override { return matrix_.block; }
+  std::int64_t nodes() const override { return matrix_.rows; }
+  void apply(std::span<const double> x, std::span<double> y) const override;
+  void block_diagonal(std::span<double> blocks) const override;
+  const BlockCsr& matrix() const override { return matrix_; }
+  std::span<const double> positions() const override { return {}; }
+  int space_dimension() const override { return matrix_.block; }
+  int periodic_directions() const override { return matrix_.block; }
+  bool translations_are_null() const override { return null_; }
+  bool holds_centre_of_mass() const override { return held_; }
+  std::uint64_t generation() const override { return 1; }
+
+ private:
+  BlockCsr matrix_;
+  bool null_;
+  bool held_;
+};
+
+}  // namespace odpd

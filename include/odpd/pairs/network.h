@@ -1,0 +1,54 @@
+#pragma once
+// The pair network: one edge per interacting pair. Everything else follows from it,
+//
+//   R = sum_edges J^T Z J,  Z = zeta_par e e^T + zeta_perp (I - e e^T),  F_B = sum_edges J^T sqrt(2 kT Z/dt) w,
+//
+// with J the map from the two velocities to the slip v_i - v_j.
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "odpd/core/vec.h"
+
+namespace odpd {
+
+/// What a pair model says of two particles a distance r apart.
+struct PairTerms {
+  double u = 0.0;          ///< pair energy
+  double f_c = 0.0;        ///< conservative force on i along e (positive: repulsion)
+  double k_c = 0.0;        ///< stiffness -df_c/dr (force/length)
+  double zeta_par = 0.0;   ///< friction along e (mass/time)
+  double zeta_perp = 0.0;  ///< friction across e (mass/time)
+  double kT = 0.0;         ///< temperature of the pair (energy)
+};
+
+/// Edges as structure of arrays, ordered by (i, j) with i < j in memory. Edges between two particles of known
+/// velocity are left out.
+template <int D>
+struct PairNetwork {
+  std::int64_t particles = 0;
+  std::vector<std::int32_t> i, j;
+  std::vector<Vec<D>> e;     ///< unit vector from j to i
+  std::vector<double> r;     ///< distance
+  std::vector<double> u, f_c, k_c, zeta_par, zeta_perp, kT;
+  bool transverse = false;   ///< some zeta_perp is not zero
+
+  // The edges of each particle, in fixed order: edge[start[p]] .. edge[start[p+1]-1].
+  std::vector<std::int64_t> start;
+  std::vector<std::int32_t> edge;
+
+  std::int64_t size() const { return static_cast<std::int64_t>(i.size()); }
+  std::span<const std::int32_t> edges_of(std::int64_t particle) const {
+    const auto b = static_cast<std::size_t>(start[static_cast<std::size_t>(particle)]);
+    const auto n = static_cast<std::size_t>(start[static_cast<std::size_t>(particle) + 1]) - b;
+    return std::span<const std::int32_t>(edge).subspan(b, n);
+  }
+  void resize(std::int64_t edges);
+  /// Fills start and edge from i and j.
+  void index_edges();
+  /// Bytes held, for reports.
+  std::int64_t bytes() const;
+};
+
+}  // namespace odpd

@@ -1,0 +1,34 @@
+#pragma once
+// A pair model looks at two particles and writes one edge; nothing else in the code knows which model it was.
+#include <cstdint>
+#include <span>
+
+#include "odpd/geometry/pair_list.h"
+#include "odpd/particles/particles.h"
+#include "odpd/pairs/network.h"
+
+namespace odpd {
+
+/// What a model may know of a particle besides its position.
+struct Site {
+  std::int32_t species = 0;
+};
+
+template <int D>
+class PairModel {
+ public:
+  virtual ~PairModel() = default;
+  /// Largest distance at which a pair interacts (length).
+  virtual double cutoff() const = 0;
+  /// Terms of one pair at distance r >= 0; all zero beyond the cutoff.
+  virtual PairTerms pair(double r, Site site_i, Site site_j) const = 0;
+  /// Replaces `network` by the edges of all pairs of the list closer than the cutoff at these positions.
+  virtual void write_edges(const PairList<D>& list, const Box<D>& box, std::span<const Vec<D>> positions,
+                           const Particles<D>& particles, PairNetwork<D>& network) const = 0;
+  /// Some pair has a conservative force (a > 0); otherwise energy and pressure are those of an ideal gas.
+  virtual bool conservative() const = 0;
+  /// Some pair has kT > 0.
+  virtual bool thermal() const = 0;
+};
+
+}  // namespace odpd

@@ -1,0 +1,25 @@
+#pragma once
+// Filling a scene: frozen wall layers, fluid particles from random positions, a lattice or a file, and the removal of
+// overlaps by damped descent in the energy (no friction matrix needed, so it works before any solve can).
+#include <vector>
+
+#include "odpd/dynamics/surroundings.h"
+#include "odpd/pairs/pair_model.h"
+#include "odpd/scene/scene_settings.h"
+
+namespace odpd {
+
+/// Adds the particles of all walls, group k + 1 for walls[k].
+template <int D>
+void place_walls(const SceneSettings<D>& settings, Particles<D>& particles);
+
+/// Adds the free particles between `low` and `high` (or at the start file's positions).
+template <int D>
+void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<D>& high, Particles<D>& particles);
+
+/// `sweeps` times: every free particle moves along its force F by |F| / (sum of its stiffnesses), at most r_c/20.
+template <int D>
+void relax(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& surroundings, std::int64_t sweeps,
+           Particles<D>& particles);
+
+}  // namespace odpd

@@ -1,0 +1,48 @@
+#pragma once
+// A scene: the particles in their box, the pair model, flat walls of frozen particles with a smooth potential behind
+// their surface, and a body force. It is what the dynamics sees as its surroundings.
+#include <memory>
+#include <vector>
+
+#include "odpd/dynamics/surroundings.h"
+#include "odpd/pairs/pair_model.h"
+#include "odpd/scene/scene_settings.h"
+
+namespace odpd {
+
+template <int D>
+class Scene : public Surroundings<D> {
+ public:
+  /// Builds the model, places walls and fluid, and relaxes overlaps. Throws ConfigError (box too small, more particles
+  /// of a species than the fluid has, start positions inside a wall or outside the box).
+  explicit Scene(SceneSettings<D> settings);
+
+  const SceneSettings<D>& settings() const { return settings_; }
+  const Box<D>& box() const { return settings_.box; }
+  Particles<D>& particles() { return particles_; }
+  const Particles<D>& particles() const { return particles_; }
+  const PairModel<D>& model() const { return *model_; }
+
+  /// Ends of the space between the wall surfaces (the box itself where it is periodic).
+  Vec<D> fluid_low() const;
+  Vec<D> fluid_high() const;
+  double fluid_volume() const;
+  double largest_kT() const;
+
+  void add_potential_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
+                            std::vector<Vec<D>>& force) const override;
+  double potential_energy(const Particles<D>& particles, std::span<const Vec<D>> positions,
+                          std::vector<double>& laplacian) const override;
+  void add_driving_forces(const Particles<D>& particles, double t, std::vector<Vec<D>>& force) const override;
+  Vec<D> known_velocity(std::int32_t group, double t) const override;
+  bool confine(Vec<D>& r) const override;
+
+ private:
+  double depth_behind(const WallSettings<D>& wall, const Vec<D>& r) const;
+
+  SceneSettings<D> settings_;
+  std::unique_ptr<PairModel<D>> model_;
+  Particles<D> particles_;
+};
+
+}  // namespace odpd

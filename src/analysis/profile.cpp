@@ -1,0 +1,212 @@
+#include "odpd/analysis/profile.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "odpd/analysis/least_squares.h"
+#include "odpd/analysis/thermo.h"
+
+namespace odpd {
+
+template <int D>
+Profile<D>::Profile(ObserverSettings settings, ProfileSettings profile, const Scene<D>& scene)
+    : Observer<D>(std::move(settings)),
+      profile_(profile),
+      scene_(scene),
+      low_(scene.fluid_low()[profile.axis]),
+      high_(scene.fluid_high()[profile.axis]),
+      average_(width * static_cast<std::size_t>(profile.bins)) {}
+
+template <int D>
+std::int64_t Profile<D>::bin_of(const Vec<D>& r) const {
+  const double x = (r[profile_.axis] - low_) / (high_ - low_) * static_cast<double>(profile_.bins);
+  // A particle pressed behind a wall's surface belongs to no bin.
+  return x >= 0.0 && x < static_cast<double>(profile_.bins) ? static_cast<std::int64_t>(x) : -1;
+}
+
+template <int D>
+double Profile<D>::centre(std::size_t bin) const {
+  return low_ + (high_ - low_) * (static_cast<double>(bin) + 0.5) / static_cast<double>(profile_.bins);
+}
+
+template <int D>
+void Profile<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
+  std::vector<double> force_squared, laplacian;
+  double wall_energy = 0.0;
+  configurational_terms(scene_, particles, record.start, force_squared, laplacian, wall_energy);
+  newest_.assign(average_.width(), 0.0);
+  for (std::size_t i = 0; i < record.v_mid.size(); ++i) {
+    if (!particles.is_free(i)) continue;
+    Vec<D> middle = record.start.position[i] + (0.5 * record.dt) * record.v_mid[i];
+    scene_.box().wrap(middle);
+    if (const std::int64_t bin = bin_of(middle); bin >= 0) {
+      newest_[column(static_cast<std::size_t>(bin), 0)] += 1.0;
+      for (int c = 0; c < D; ++c)
+        newest_[column(static_cast<std::size_t>(bin), static_cast<std::size_t>(c) + 1)] += record.v_mid[i][c];
+    }
+    if (const std::int64_t bin = bin_of(record.start.position[i]); bin >= 0) {
+      newest_[column(static_cast<std::size_t>(bin), D + 1)] += force_squared[i];
+      newest_[column(static_cast<std::size_t>(bin), D + 2)] += laplacian[i];
+    }
+  }
+  average_.add(newest_);
+}
+
+template <int D>
+Table Profile<D>::table() const {
+  Table t;
+  t.comment = {"bins between the wall surfaces; standard errors by block averaging"};
+  t.columns = {std::string(1, "xyz"[profile_.axis]), "density", "density_error"};
+  for (int c = 0; c < D; ++c) {
+    t.columns.push_back(fmt::format("v_{}", "xyz"[c]));
+    t.columns.push_back(fmt::format("v_{}_error", "xyz"[c]));
+  }
+  t.columns.insert(t.columns.end(), {"config_temperature", "config_temperature_error"});
+  const double bin_volume = scene_.fluid_volume() / static_cast<double>(profile_.bins);
+  for (std::size_t b = 0; b < static_cast<std::size_t>(profile_.bins); ++b) {
+    std::vector<double> row{centre(b), average_.mean(column(b, 0)) / bin_volume,
+                            average_.standard_error(column(b, 0)) / bin_volume};
+    for (std::size_t c = 1; c <= D; ++c) {
+      const std::vector<BlockAverage::RatioTerm> term{{1.0, column(b, c), column(b, 0)}};
+      row.insert(row.end(), {average_.ratio(column(b, c), column(b, 0)), average_.ratio_error(term)});
+    }
+    const std::vector<BlockAverage::RatioTerm> term{{1.0, column(b, D + 1), column(b, D + 2)}};
+    row.insert(row.end(), {average_.ratio(column(b, D + 1), column(b, D + 2)), average_.ratio_error(term)});
+    t.rows.push_back(std::move(row));
+  }
+  return t;
+}
+
+template <int D>
+void Profile<D>::add_results(Results& results) const {
+  if (average_.samples() == 0) return;
+  const std::string& name = this->settings().name;
+  const Table t = table();
+  Chart velocity;
+  velocity.title = fmt::format("Velocity v_{} across {}", "xyz"[profile_.component], "xyz"[profile_.axis]);
+  velocity.x_label = fmt::format("{} / r_c", "xyz"[profile_.axis]);
+  velocity.y_label = fmt::format("v_{}", "xyz"[profile_.component]);
+  Curve measured{.title = "measured", .x = {}, .y = {}, .error = {}};
+  const auto v = static_cast<std::size_t>(3 + 2 * profile_.component);
+  for (const auto& row : t.rows) {
+    measured.x.push_back(row[0]);
+    measured.y.push_back(row[v]);
+    measured.error.push_back(row[v + 1]);
+  }
+  velocity.curves.push_back(std::move(measured));
+  if (profile_.fit != ProfileFit::none) add_fit(results, velocity);
+  Chart density{.title = "Number density", .x_label = velocity.x_label, .y_label = "n r_c^d", .curves = {}};
+  Curve n{.title = "measured", .x = {}, .y = {}, .error = {}, .line = true};
+  for (const auto& row : t.rows) {
+    n.x.push_back(row[0]);
+    n.y.push_back(row[1]);
+    n.error.push_back(row[2]);
+  }
+  density.curves.push_back(std::move(n));
+  results.tables.emplace_back(name, t);
+  results.charts.emplace_back(name + "_velocity", std::move(velocity));
+  results.charts.emplace_back(name + "_density", std::move(density));
+}
+
+template <int D>
+void Profile<D>::add_fit(Results& results, Chart& chart) const {
+  const std::string& name = this->settings().name;
+  const int degree = profile_.fit == ProfileFit::linear ? 1 : 2;
+  const auto component = static_cast<std::size_t>(profile_.component) + 1;
+  const double middle = 0.5 * (low_ + high_);
+  std::vector<double> x, y, error;
+  std::vector<BlockAverage::RatioTerm> bins;
+  double density = 0.0;
+  for (std::size_t b = 0; b < static_cast<std::size_t>(profile_.bins); ++b) {
+    if (centre(b) < profile_.fit_from || centre(b) > profile_.fit_to) continue;
+    const std::vector<BlockAverage::RatioTerm> term{{1.0, column(b, component), column(b, 0)}};
+    const double e = average_.ratio_error(term);
+    if (!(e > 0.0)) {
+      results.notes.push_back(fmt::format("{}: too few samples for errors, so no fit: run longer", name));
+      return;
+    }
+    x.push_back(centre(b) - middle);
+    y.push_back(average_.ratio(column(b, component), column(b, 0)));
+    error.push_back(e);
+    bins.push_back(term[0]);
+    density += average_.mean(column(b, 0));
+  }
+  const PolynomialFit fit = fit_polynomial(degree, x, y, error);
+  density *= static_cast<double>(profile_.bins) / scene_.fluid_volume() / static_cast<double>(x.size());
+  const auto coefficient_error = [&](std::size_t p) {
+    std::vector<BlockAverage::RatioTerm> terms = bins;
+    for (std::size_t k = 0; k < terms.size(); ++k) terms[k].weight = fit.weight[p][k];
+    return average_.ratio_error(terms);
+  };
+  const double nan = std::nan("");
+  results.scalars.push_back({name + ".reduced_chi_square", fit.reduced_chi_square, nan});
+  results.scalars.push_back({name + ".bulk_density", density, nan});
+
+  const int below = scene_.settings().wall_at(profile_.axis, false);
+  const int above = scene_.settings().wall_at(profile_.axis, true);
+  const bool channel = below >= 0 && above >= 0;
+  const double h = high_ - low_;
+  const double u_low = channel ? scene_.known_velocity(below + 1, 0.0)[profile_.component] : 0.0;
+  const double u_high = channel ? scene_.known_velocity(above + 1, 0.0)[profile_.component] : 0.0;
+  Curve line{.title = degree == 1 ? "linear fit" : "parabola fit", .x = {}, .y = {}, .error = {}, .line = true,
+             .points = false};
+  for (int k = 0; k <= 50; ++k) {
+    line.x.push_back(low_ + h * k / 50.0);
+    line.y.push_back(fit(line.x.back() - middle));
+  }
+  chart.curves.push_back(std::move(line));
+  if (degree == 1) {
+    const double slope = fit.coefficient[1];
+    const double slope_error = coefficient_error(1);
+    results.scalars.push_back({name + ".slope", slope, slope_error});
+    if (channel && u_high != u_low) {
+      const double expected = (u_high - u_low) / h;
+      results.scalars.push_back({name + ".slope_ratio", slope / expected, slope_error / std::abs(expected)});
+      results.scalars.push_back({name + ".slip_length", 0.5 * h * (expected / slope - 1.0),
+                                 0.5 * h * std::abs(expected / (slope * slope)) * slope_error});
+      results.notes.push_back(fmt::format("{}: H_eff = {} is the distance between the wall surfaces (the layers at depth "
+                                          "0); slope_ratio compares with (U_high - U_low)/H_eff",
+                                          name, h));
+      chart.curves.push_back({.title = "no slip at the surfaces", .x = {low_, high_}, .y = {u_low, u_high}, .error = {},
+                              .line = true, .points = false});
+    }
+    return;
+  }
+  const double curvature = fit.coefficient[2];
+  const double curvature_error = coefficient_error(2);
+  results.scalars.push_back({name + ".curvature", curvature, curvature_error});
+  const double f = scene_.settings().body_force[profile_.component];
+  if (!channel || f == 0.0) return;
+  const double viscosity = density * f / (-2.0 * curvature);
+  results.scalars.push_back({name + ".viscosity", viscosity, std::abs(viscosity / curvature) * curvature_error});
+  const double top = fit.coefficient[0] - fit.coefficient[1] * fit.coefficient[1] / (4.0 * curvature);
+  results.scalars.push_back({name + ".maximum", top, coefficient_error(0)});
+  const double half_width = std::sqrt((0.5 * (u_low + u_high) - top) / curvature);
+  results.scalars.push_back({name + ".slip_length", half_width - 0.5 * h, nan});
+}
+
+template <int D>
+std::vector<std::string> Profile<D>::series_columns() const {
+  std::vector<std::string> columns;
+  for (std::int64_t b = 0; b < profile_.bins; ++b)
+    for (const char* what : {"count", "v_sum"}) columns.push_back(fmt::format("{}_{}", what, b));
+  return columns;
+}
+
+template <int D>
+std::vector<double> Profile<D>::series_row() const {
+  std::vector<double> row;
+  if (newest_.empty()) return row;
+  for (std::size_t b = 0; b < static_cast<std::size_t>(profile_.bins); ++b) {
+    row.push_back(newest_[column(b, 0)]);
+    row.push_back(newest_[column(b, static_cast<std::size_t>(profile_.component) + 1)]);
+  }
+  return row;
+}
+
+template class Profile<2>;
+template class Profile<3>;
+
+}  // namespace odpd

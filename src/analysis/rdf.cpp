@@ -1,0 +1,113 @@
+#include "odpd/analysis/rdf.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "odpd/geometry/pair_list.h"
+
+namespace odpd {
+
+namespace {
+// Volume of a ball of radius r.
+template <int D>
+double ball(double r) {
+  return std::pow(std::numbers::pi, 0.5 * D) / std::tgamma(0.5 * D + 1.0) * std::pow(r, D);
+}
+}  // namespace
+
+template <int D>
+Rdf<D>::Rdf(ObserverSettings settings, double r_max, std::int64_t bins, const Scene<D>& scene)
+    : Observer<D>(std::move(settings)),
+      r_max_(r_max),
+      bins_(static_cast<std::size_t>(bins)),
+      scene_(scene),
+      species_(scene.settings().species.size()) {
+  std::vector<double> count(species_, 0.0);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(scene.particles().size()); ++i)
+    if (scene.particles().is_free(i)) count[static_cast<std::size_t>(scene.particles().species[i])] += 1.0;
+  for (std::size_t a = 0; a < species_; ++a)
+    for (std::size_t b = a; b < species_; ++b) {
+      const double pairs = a == b ? 0.5 * count[a] * (count[a] - 1.0) : count[a] * count[b];
+      for (std::size_t k = 0; k < bins_; ++k) {
+        const double dr = r_max / static_cast<double>(bins);
+        const double shell = ball<D>(dr * static_cast<double>(k + 1)) - ball<D>(dr * static_cast<double>(k));
+        norm_.push_back(pairs > 0.0 ? scene.fluid_volume() / (pairs * shell) : 0.0);
+      }
+    }
+  average_ = BlockAverage(norm_.size());
+}
+
+template <int D>
+std::size_t Rdf<D>::pair_index(std::int32_t a, std::int32_t b) const {
+  const auto low = static_cast<std::size_t>(std::min(a, b));
+  const auto high = static_cast<std::size_t>(std::max(a, b));
+  return low * species_ - low * (low + 1) / 2 + high;  // row-major upper triangle
+}
+
+template <int D>
+void Rdf<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
+  PairList<D> list(scene_.box(), r_max_, 0.0);
+  const auto& r = record.start.position;
+  list.update(r);
+  newest_.assign(norm_.size(), 0.0);
+  for (std::int64_t row = 0; row < list.rows(); ++row) {
+    const auto i = static_cast<std::size_t>(row);
+    if (!particles.is_free(i)) continue;
+    for (const std::int32_t partner : list.partners(row)) {
+      const auto j = static_cast<std::size_t>(partner);
+      if (!particles.is_free(j)) continue;
+      const double distance = norm(scene_.box().separation(r[i], r[j]));
+      const auto bin = static_cast<std::size_t>(distance / r_max_ * static_cast<double>(bins_));
+      if (bin < bins_) newest_[pair_index(particles.species[i], particles.species[j]) * bins_ + bin] += 1.0;
+    }
+  }
+  for (std::size_t k = 0; k < newest_.size(); ++k) newest_[k] *= norm_[k];
+  average_.add(newest_);
+}
+
+template <int D>
+std::vector<std::string> Rdf<D>::series_columns() const {
+  std::vector<std::string> columns;
+  const auto& species = scene_.settings().species;
+  for (std::size_t a = 0; a < species_; ++a)
+    for (std::size_t b = a; b < species_; ++b)
+      for (std::size_t k = 0; k < bins_; ++k)
+        columns.push_back(fmt::format("g_{}_{}_{}", species[a].name, species[b].name, k));
+  return columns;
+}
+
+template <int D>
+void Rdf<D>::add_results(Results& results) const {
+  if (average_.samples() == 0) return;
+  const auto& species = scene_.settings().species;
+  Table table;
+  table.comment = {"r: middle of the bin; standard errors by block averaging"};
+  table.columns = {"r"};
+  Chart chart{.title = "Radial distribution function", .x_label = "r / r_c", .y_label = "g(r)", .curves = {}};
+  const double dr = r_max_ / static_cast<double>(bins_);
+  for (std::size_t k = 0; k < bins_; ++k) table.rows.push_back({dr * (static_cast<double>(k) + 0.5)});
+  std::size_t column = 0;
+  for (std::size_t a = 0; a < species_; ++a)
+    for (std::size_t b = a; b < species_; ++b) {
+      const std::string pair = species[a].name + "_" + species[b].name;
+      table.columns.insert(table.columns.end(), {"g_" + pair, "g_" + pair + "_error"});
+      Curve curve{.title = species[a].name + " - " + species[b].name, .x = {}, .y = {}, .error = {}, .line = true,
+                  .points = false};
+      for (std::size_t k = 0; k < bins_; ++k, ++column) {
+        const double g = average_.mean(column);
+        table.rows[k].insert(table.rows[k].end(), {g, average_.standard_error(column)});
+        curve.x.push_back(table.rows[k][0]);
+        curve.y.push_back(g);
+      }
+      chart.curves.push_back(std::move(curve));
+    }
+  results.tables.emplace_back(this->settings().name, std::move(table));
+  results.charts.emplace_back(this->settings().name, std::move(chart));
+}
+
+template class Rdf<2>;
+template class Rdf<3>;
+
+}  // namespace odpd

@@ -1,0 +1,71 @@
+#include "odpd/analysis/thermo.h"
+
+#include "odpd/core/parallel.h"
+#include "odpd/operator/edge_sums.h"
+
+namespace odpd {
+
+template <int D>
+void configurational_terms(const Scene<D>& scene, const Particles<D>& particles, const Stage<D>& stage,
+                           std::vector<double>& force_squared, std::vector<double>& laplacian, double& wall_energy) {
+  laplacian.assign(stage.position.size(), 0.0);
+  force_squared.assign(stage.position.size(), 0.0);
+  add_laplacian(stage.network, laplacian);
+  wall_energy = scene.potential_energy(particles, stage.position, laplacian);
+  for (std::size_t i = 0; i < stage.position.size(); ++i) {
+    if (particles.is_free(i)) {
+      force_squared[i] = dot(stage.potential_force[i], stage.potential_force[i]);
+    } else {
+      laplacian[i] = 0.0;
+    }
+  }
+}
+
+template <int D>
+Thermo<D>::Thermo(ObserverSettings settings, const Scene<D>& scene)
+    : Observer<D>(std::move(settings)), scene_(scene), average_(4) {}
+
+template <int D>
+void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
+  const PairNetwork<D>& network = record.start.network;
+  std::vector<double> force_squared, laplacian, virial(static_cast<std::size_t>(network.size()));
+  double wall_energy = 0.0;
+  configurational_terms(scene_, particles, record.start, force_squared, laplacian, wall_energy);
+  for (std::size_t k = 0; k < virial.size(); ++k) {
+    const bool both_free = particles.is_free(static_cast<std::size_t>(network.i[k])) &&
+                           particles.is_free(static_cast<std::size_t>(network.j[k]));
+    virial[k] = (both_free ? 1.0 : 0.5) * network.r[k] * network.f_c[k];
+  }
+  const auto n = static_cast<double>(particles.free_count());
+  const double volume = scene_.fluid_volume();
+  newest_ = {(fixed_sum(network.u) + wall_energy) / n,
+             (n * scene_.largest_kT() + fixed_sum(virial) / D) / volume, fixed_sum(force_squared),
+             fixed_sum(laplacian)};
+  average_.add(newest_);
+}
+
+template <int D>
+std::vector<std::string> Thermo<D>::series_columns() const {
+  return {"energy_per_particle", "pressure", "force_squared", "laplacian"};
+}
+
+template <int D>
+void Thermo<D>::add_results(Results& results) const {
+  if (average_.samples() == 0) return;
+  // The default observer's names carry no prefix: every run has them.
+  const std::string prefix = this->settings().name == "thermo" ? "" : this->settings().name + ".";
+  results.scalars.push_back({prefix + "energy_per_particle", average_.mean(0), average_.standard_error(0)});
+  results.scalars.push_back({prefix + "pressure", average_.mean(1), average_.standard_error(1)});
+  const std::vector<BlockAverage::RatioTerm> terms{{1.0, 2, 3}};
+  // Without a conservative force this is 0/0: undefined, and written as null.
+  results.scalars.push_back({prefix + "config_temperature", average_.ratio(2, 3), average_.ratio_error(terms)});
+}
+
+template void configurational_terms<2>(const Scene<2>&, const Particles<2>&, const Stage<2>&, std::vector<double>&,
+                                       std::vector<double>&, double&);
+template void configurational_terms<3>(const Scene<3>&, const Particles<3>&, const Stage<3>&, std::vector<double>&,
+                                       std::vector<double>&, double&);
+template class Thermo<2>;
+template class Thermo<3>;
+
+}  // namespace odpd

@@ -1,0 +1,208 @@
+#include "odpd/app/case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "odpd/core/error.h"
+#include "odpd/dynamics/integrator.h"
+#include "odpd/io/csv.h"
+#include "odpd/io/trajectory.h"
+
+namespace odpd {
+
+namespace {
+
+std::int64_t steps_of(const Config& run, const std::string& key, double time, double dt) {
+  const double steps = time / dt;
+  if (steps > 1e15) run.fail(key, "that is more than 1e15 steps: shorten it or enlarge integrator.dt");
+  return std::llround(steps);
+}
+
+SolverOptions read_solver(const Config& config, bool& hold_centre_of_mass) {
+  SolverOptions options;
+  options.name = config.choice("name", solver_names(), options.name);
+  options.tolerance = config.positive("tolerance", options.tolerance);
+  if (options.tolerance >= 1.0) config.fail("tolerance", "must be below 1");
+  options.max_iterations = config.positive_integer("max_iterations", options.max_iterations);
+  options.stopping = config.choice("stopping", {"residual", "increment"}, "residual") == "increment"
+                         ? Stopping::increment
+                         : Stopping::residual;
+  options.petsc_options = config.text("petsc_options", "");
+  const bool scheme_2 = options.name == "picard-deflated";
+  hold_centre_of_mass = config.boolean("hold_centre_of_mass", scheme_2);
+  if (scheme_2 && !hold_centre_of_mass)
+    config.fail("hold_centre_of_mass", "picard-deflated (Scheme 2) holds the centre of mass still by construction: leave "
+                                       "this key out, or choose another solver");
+  return options;
+}
+
+std::int64_t interval(const Config& config, const std::string& key, std::int64_t fallback) {
+  const std::int64_t steps = config.integer(key, fallback);
+  if (steps < 0) config.fail(key, "must be a number of steps, or 0 for never");
+  return steps;
+}
+
+std::vector<CheckSettings> read_checks(const Config& config) {
+  std::vector<CheckSettings> checks;
+  for (const Config& entry : config.tables("check")) {
+    CheckSettings check;
+    check.observable = entry.text("observable");
+    check.name = entry.text("name", check.observable);
+    check.source = entry.text("source", "");
+    const bool band = entry.has("minimum") || entry.has("maximum");
+    if (band) {
+      // A band is a value with a tolerance around it.
+      const double low = entry.number("minimum");
+      const double high = entry.number("maximum");
+      if (!(low < high)) entry.fail("minimum", "must be less than maximum");
+      check.expected = 0.5 * (low + high);
+      check.tolerance = 0.5 * (high - low);
+    } else {
+      check.expected = entry.number("expected");
+      if (entry.has("tolerance") == entry.has("relative_tolerance"))
+        entry.fail("expected", "needs tolerance or relative_tolerance, one of them");
+      check.tolerance = entry.has("tolerance")
+                            ? entry.non_negative("tolerance")
+                            : entry.positive("relative_tolerance") * std::abs(check.expected);
+    }
+    if (entry.has("standard_error_below")) check.standard_error_below = entry.positive("standard_error_below");
+    checks.push_back(std::move(check));
+  }
+  return checks;
+}
+
+double parse_number(const std::string& file, std::int64_t line, const std::string& column, const std::string& text) {
+  double value = 0.0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (status != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+    throw ConfigError(fmt::format("{}:{}: column '{}': '{}' is not a finite number", file, line, column, text));
+  return value;
+}
+
+template <int D>
+std::int32_t named_species(const SceneSettings<D>& scene, const std::string& name, const std::string& where) {
+  for (std::size_t k = 0; k < scene.species.size(); ++k)
+    if (scene.species[k].name == name || std::to_string(k) == name) return static_cast<std::int32_t>(k);
+  throw ConfigError(fmt::format("{}: species '{}' is not one of the case's [[species]]; add it there", where, name));
+}
+
+template <int D>
+void read_start_csv(SceneSettings<D>& scene) {
+  const TextTable table = read_csv(scene.start_file);
+  const auto column = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find(table.columns.begin(), table.columns.end(), name) -
+                                    table.columns.begin());
+  };
+  const std::size_t species = column("species");
+  for (int c = 0; c < D; ++c)
+    if (column({"xyz"[c]}) == table.columns.size())
+      throw ConfigError(fmt::format("{}: there is no column '{}': a start file needs x, y{} and, if wanted, species",
+                                    scene.start_file, "xyz"[c], D > 2 ? ", z" : ""));
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    Vec<D> r;
+    for (int c = 0; c < D; ++c)
+      r[c] = parse_number(scene.start_file, table.line[row], {"xyz"[c]}, table.rows[row][column({"xyz"[c]})]);
+    scene.start_positions.push_back(r);
+    if (species < table.columns.size())
+      scene.start_species.push_back(named_species(scene, table.rows[row][species],
+                                                  fmt::format("{}:{}", scene.start_file, table.line[row])));
+  }
+}
+
+template <int D>
+void read_start_h5md(SceneSettings<D>& scene) {
+  const Frame frame = read_h5md(scene.start_file);
+  if (frame.dimension != D)
+    throw ConfigError(fmt::format("{} holds positions in {} dimensions, the case has dimension = {}", scene.start_file,
+                                  frame.dimension, D));
+  const std::size_t n = frame.position.size() / D;
+  for (std::size_t k = 0; k < n; ++k) {
+    // The walls of an odpd trajectory are placed by the case itself.
+    if (k < frame.group.size() && frame.group[k] > 0) continue;
+    Vec<D> r;
+    for (std::size_t c = 0; c < D; ++c) r.x[c] = frame.position[k * D + c];
+    scene.start_positions.push_back(r);
+    if (k >= frame.species.size()) continue;
+    const auto index = static_cast<std::size_t>(frame.species[k]);
+    const std::string name = index < frame.species_names.size() ? frame.species_names[index] : std::to_string(index);
+    scene.start_species.push_back(named_species(scene, name, scene.start_file));
+  }
+}
+
+}  // namespace
+
+Config open_case(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+  return Config::from_file(path, overrides);
+}
+
+std::string case_name(const std::filesystem::path& path) {
+  std::filesystem::path full = std::filesystem::absolute(path).lexically_normal();
+  if (!full.has_filename()) full = full.parent_path();
+  if (full.filename() == "case.toml") full = full.parent_path();
+  return full.extension() == ".toml" ? full.stem().string() : full.filename().string();
+}
+
+CaseSettings read_case(const Config& config, const std::string& name) {
+  CaseSettings c;
+  c.name = name;
+  c.title = config.text("title", name);
+  const std::int64_t dimension = config.integer("dimension");
+  if (dimension != 2 && dimension != 3) config.fail("dimension", "must be 2 or 3");
+  c.dimension = static_cast<int>(dimension);
+  c.dynamics.seed = static_cast<std::uint64_t>(config.integer("seed", 1));
+  const Config integrator = config.table("integrator");
+  c.integrator = integrator.choice("name", integrator_names(), "trapezoidal");
+  c.clock.dt = integrator.positive("dt");
+  c.solver = read_solver(config.table("solver"), c.dynamics.hold_centre_of_mass);
+  const Config neighbours = config.table("neighbours");
+  c.dynamics.skin = neighbours.non_negative("skin", c.dynamics.skin);
+  c.dynamics.reorder_every = interval(neighbours, "reorder_every", c.dynamics.reorder_every);
+  const Config run = config.table("run");
+  c.clock.equilibration_steps = steps_of(run, "equilibrate", run.non_negative("equilibrate", 0.0), c.clock.dt);
+  const std::int64_t measured = steps_of(run, "duration", run.positive("duration"), c.clock.dt);
+  if (measured < 1) run.fail("duration", "is shorter than one time step (integrator.dt)");
+  c.clock.total_steps = c.clock.equilibration_steps + measured;
+  const Config output = config.table("output");
+  c.output.checkpoint_every = interval(output, "checkpoint_every", c.output.checkpoint_every);
+  c.output.trajectory_every = interval(output, "trajectory_every", c.output.trajectory_every);
+  c.output.vtk_every = interval(output, "vtk_every", c.output.vtk_every);
+  c.output.pictures = output.boolean("pictures", c.output.pictures);
+  c.checks = read_checks(config);
+  return c;
+}
+
+template <int D>
+void read_start_file(SceneSettings<D>& scene) {
+  if (scene.start != StartKind::file) return;
+  const std::string extension = std::filesystem::path(scene.start_file).extension().string();
+  if (extension == ".csv") {
+    read_start_csv(scene);
+  } else if (extension == ".h5" || extension == ".h5md" || extension == ".hdf5") {
+    read_start_h5md(scene);
+  } else {
+    throw ConfigError(fmt::format("{}: start files are CSV (.csv) or H5MD (.h5, .h5md)", scene.start_file));
+  }
+  if (scene.start_positions.empty())
+    throw ConfigError(fmt::format("{}: there are no fluid particles in it", scene.start_file));
+}
+
+std::vector<std::pair<std::string, std::string>> fixed_values(const Config& config) {
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const auto& value : config.flattened()) {
+    const std::string& path = value.first;
+    const auto in = [&](std::string_view table) { return path.rfind(table, 0) == 0; };
+    if (path == "title" || path == "run.duration" || in("solver.") || in("output.") || in("check.") || path == "check")
+      continue;
+    values.push_back(value);
+  }
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+template void read_start_file<2>(SceneSettings<2>&);
+template void read_start_file<3>(SceneSettings<3>&);
+
+}  // namespace odpd

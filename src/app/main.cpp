@@ -1,0 +1,99 @@
+// The program: reads the command line, calls one command of the library, turns errors into one message and an exit code.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "odpd/app/compare.h"
+#include "odpd/app/info.h"
+#include "odpd/app/interrupt.h"
+#include "odpd/app/run.h"
+#include "odpd/core/error.h"
+#include "odpd/core/log.h"
+#include "odpd/version.h"
+
+namespace {
+
+constexpr const char* exit_codes =
+    "Exit codes: 0 ok, 1 case or usage, 2 solver or physics, 3 files, 4 a check failed, 130 interrupted.\n"
+    "Start with: odpd run cases/01_couette      Every key of a case file: docs/case-file.md";
+
+void add_case(CLI::App& command, std::filesystem::path& path, std::vector<std::string>& overrides) {
+  command.add_option("case", path, "directory that holds case.toml, or a .toml file")->required();
+  // One value each time, so that a case may follow.
+  command
+      .add_option("--set", overrides,
+                  "key=value overrides a key of the case, as in --set integrator.dt=0.01; values are TOML, a bare word is "
+                  "a string; may be repeated")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+int command_line(int argc, char** argv) {
+  CLI::App app{"odpd: creeping flow of dissipative-particle fluids"};
+  app.set_version_flag("--version", "odpd " ODPD_VERSION);
+  app.require_subcommand(1);
+  app.footer(exit_codes);
+  bool quiet = false;
+  app.add_flag("--quiet", quiet, "only warnings and errors on stderr beside the live line");
+
+  odpd::RunOptions run;
+  CLI::App* run_command = app.add_subcommand("run", "run a case and check its results");
+  add_case(*run_command, run.case_path, run.overrides);
+  run_command->add_option("--out", run.out,
+                          "output directory [runs/<case>]; an earlier run there is moved aside to <dir>.N");
+  run_command->add_option("--threads", run.threads, "threads; 0 chooses by the number of particles; never changes results")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  run_command->add_option("--restart", run.restart,
+                          "checkpoint.h5 to continue from: into its own directory (default) or, with --out, a new one");
+  run_command->add_flag("--dry-run", run.dry_run, "print what would be modelled, its size and an estimate of the time");
+
+  odpd::CompareOptions compare;
+  CLI::App* compare_command =
+      app.add_subcommand("compare", "solve one frozen step of a case with every backend: iterations, error, seconds");
+  add_case(*compare_command, compare.case_path, compare.overrides);
+  compare_command->add_option("--solvers", compare.solvers, "names, separated by commas [all of this build]")
+      ->delimiter(',');
+  compare_command->add_option("--tolerance", compare.tolerances, "tolerances, separated by commas [1e-2 to 1e-10]")
+      ->delimiter(',')
+      ->check(CLI::Range(1e-16, 1.0));
+  compare_command->add_option("--steps", compare.steps, "steps of the case before its configuration is frozen")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  compare_command->add_option("--out", compare.out, "output directory [runs/<case>-compare]");
+  compare_command->add_option("--threads", compare.threads, "threads")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+
+  CLI::App* info_command = app.add_subcommand("info", "version, build options, backends and machine");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 1;
+  }
+  odpd::set_quiet(quiet);
+  odpd::catch_signals();
+  if (run_command->parsed()) return odpd::run_case(run);
+  if (compare_command->parsed()) return odpd::compare_solvers(compare);
+  if (info_command->parsed()) std::fputs(odpd::info_text().c_str(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return command_line(argc, argv);
+  } catch (const odpd::Error& e) {
+    std::fprintf(stderr, "odpd: error: %s\n", e.what());
+    return e.exit_code();
+  } catch (const std::bad_alloc&) {
+    std::fputs("odpd: error: not enough memory for this case; odpd run --dry-run tells what it needs\n", stderr);
+    return 2;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "odpd: error: %s\n", e.what());
+    return 2;
+  }
+}

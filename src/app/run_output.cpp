@@ -1,0 +1,153 @@
+#include "odpd/app/run_output.h"
+
+#include <fmt/format.h>
+
+#include <exception>
+
+#include "odpd/core/error.h"
+#include "odpd/core/log.h"
+#include "odpd/io/file.h"
+#include "odpd/io/gnuplot.h"
+#include "odpd/io/vtk.h"
+#include "odpd/version.h"
+
+namespace odpd {
+
+namespace fs = std::filesystem;
+
+void prepare_run_directory(const fs::path& directory) {
+  if (fs::exists(directory) && !fs::is_directory(directory))
+    throw IoError(fmt::format("{}: a file is where the output directory should be; remove it or choose another --out",
+                              directory.string()));
+  if (fs::exists(directory) && !fs::is_empty(directory)) {
+    if (!fs::exists(directory / "case.toml"))
+      throw IoError(fmt::format("{}: the directory is not empty and holds no run of odpd (no case.toml), so it is left "
+                                "alone; choose another --out",
+                                directory.string()));
+    const fs::path moved = move_aside(directory);
+    log_info(fmt::format("the earlier run was moved to {}", moved.string()));
+  }
+  make_directory(directory);
+}
+
+template <int D>
+RunOutput<D>::RunOutput(fs::path directory, const Config& config, Simulation<D>& simulation)
+    : directory_(std::move(directory)),
+      config_(config),
+      simulation_(simulation),
+      trajectory_(directory_, config.resolved(), ODPD_VERSION, simulation.settings().title) {}
+
+template <int D>
+fs::path RunOutput<D>::series_path(std::size_t k) const {
+  return directory_ / (simulation_.observers()[k]->settings().name + "_series.csv");
+}
+
+template <int D>
+void RunOutput<D>::begin() {
+  write_file_atomically(directory_ / "case.toml", config_.resolved());
+  for (std::size_t k = 0; k < simulation_.observers().size(); ++k) {
+    const auto& observer = *simulation_.observers()[k];
+    series_.push_back(nullptr);
+    if (!observer.settings().series) continue;
+    std::vector<std::string> columns = observer.series_columns();
+    columns.insert(columns.begin(), "time");
+    series_.back() = std::make_unique<SeriesFile>(series_path(k), columns);
+  }
+}
+
+template <int D>
+void RunOutput<D>::resume(CheckpointReader& in) {
+  const StateReader& state = in.component("output");
+  const std::vector<std::int64_t> bytes = state.read_integers("series_bytes");
+  for (std::size_t k = 0; k < simulation_.observers().size(); ++k)
+    series_.push_back(simulation_.observers()[k]->settings().series
+                          ? std::make_unique<SeriesFile>(series_path(k), bytes.at(k))
+                          : nullptr);
+  trajectory_.resume_at(state.read_integers("segment").at(0));
+  const std::vector<double> times = state.read_doubles("vtk_times");
+  const std::vector<std::int64_t> steps = state.read_integers("vtk_steps");
+  for (std::size_t k = 0; k < times.size(); ++k)
+    vtk_frames_.emplace_back(times[k], fmt::format("frames/{:010}.vtp", steps.at(k)));
+  write_file_atomically(directory_ / "case.toml", config_.resolved());
+}
+
+template <int D>
+void RunOutput<D>::after_step() {
+  const PhaseTimer timer(simulation_.dynamics().phases(), Phase::write);
+  const Clock& clock = simulation_.clock();
+  const OutputSettings& output = simulation_.settings().output;
+  const auto due = [&](std::int64_t every) { return every > 0 && clock.step % every == 0; };
+  for (std::size_t k = 0; k < series_.size(); ++k) {
+    const auto& observer = *simulation_.observers()[k];
+    if (!series_[k] || !observer.is_due(clock)) continue;
+    std::vector<double> row = observer.series_row();
+    if (row.empty()) continue;
+    row.insert(row.begin(), clock.time());
+    series_[k]->append(row);
+  }
+  if (due(output.trajectory_every)) trajectory_.append(simulation_.frame());
+  if (due(output.vtk_every)) write_vtk_frame();
+  if (due(output.checkpoint_every)) checkpoint();
+}
+
+template <int D>
+void RunOutput<D>::write_vtk_frame() {
+  const Clock& clock = simulation_.clock();
+  const std::string name = fmt::format("frames/{:010}.vtp", clock.step);
+  if (!vtk_frames_.empty() && vtk_frames_.back().second == name) return;
+  make_directory(directory_ / "frames");
+  write_vtp(directory_ / name, simulation_.frame());
+  vtk_frames_.emplace_back(clock.time(), name);
+  write_pvd(directory_ / "particles.pvd", vtk_frames_);
+}
+
+template <int D>
+void RunOutput<D>::checkpoint() {
+  std::vector<std::int64_t> bytes, steps;
+  std::vector<double> times;
+  for (auto& series : series_) {
+    if (series) series->flush(true);
+    bytes.push_back(series ? series->bytes() : 0);
+  }
+  trajectory_.close_segment();
+  for (const auto& [time, name] : vtk_frames_) {
+    times.push_back(time);
+    steps.push_back(std::stoll(name.substr(name.find('/') + 1)));
+  }
+  CheckpointWriter out;
+  simulation_.save(out);
+  StateWriter& state = out.component("output");
+  state.write("series_bytes", bytes);
+  state.write("segment", std::vector<std::int64_t>{trajectory_.segment()});
+  state.write("vtk_times", times);
+  state.write("vtk_steps", steps);
+  out.save(directory_ / "checkpoint.h5");
+}
+
+template <int D>
+void RunOutput<D>::salvage() noexcept {
+  try {
+    for (auto& series : series_)
+      if (series) series->flush();
+    trajectory_.close_segment();
+  } catch (const std::exception& e) {
+    log_warning(fmt::format("and the output so far could not all be written: {}", e.what()));
+  }
+}
+
+template <int D>
+void RunOutput<D>::finish(const Results& results) {
+  const PhaseTimer timer(simulation_.dynamics().phases(), Phase::write);
+  write_vtk_frame();
+  checkpoint();
+  for (const auto& [name, table] : results.tables) write_csv(directory_ / (name + ".csv"), table);
+  if (!simulation_.settings().output.pictures) return;
+  bool drawn = true;
+  for (const auto& [name, chart] : results.charts) drawn = drawn && draw_chart(directory_ / name, chart);
+  if (drawn) draw_particles(directory_ / "particles", simulation_.frame(), 0);
+}
+
+template class RunOutput<2>;
+template class RunOutput<3>;
+
+}  // namespace odpd

@@ -1,0 +1,149 @@
+#include "odpd/app/simulation.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "odpd/core/error.h"
+#include "odpd/core/log.h"
+
+namespace odpd {
+
+namespace {
+
+template <int D>
+SceneSettings<D> scene_of(const Config& config) {
+  SceneSettings<D> scene = read_scene_settings<D>(config);
+  read_start_file(scene);
+  return scene;
+}
+
+// The first value in which two cases differ, in words; empty when there is none.
+std::string difference(const Config& saved, const Config& current) {
+  const auto before = fixed_values(saved);
+  const auto now = fixed_values(current);
+  std::map<std::string, std::pair<std::string, std::string>> both;
+  for (const auto& [path, value] : before) both[path].first = value;
+  for (const auto& [path, value] : now) both[path].second = value;
+  for (const auto& [path, values] : both)
+    if (values.first != values.second)
+      return fmt::format("'{}' was {} and is {}", path, values.first.empty() ? "absent" : values.first,
+                         values.second.empty() ? "absent" : values.second);
+  return {};
+}
+
+}  // namespace
+
+template <int D>
+Simulation<D>::Simulation(const Config& config, CaseSettings settings)
+    : config_(config),
+      settings_(std::move(settings)),
+      clock_(settings_.clock),
+      scene_(scene_of<D>(config)),
+      dynamics_(scene_.box(), scene_.particles(), scene_.model(), scene_, make_solver(settings_.solver),
+                settings_.dynamics),
+      integrator_(make_integrator<D>(settings_.integrator)),
+      observers_(make_observers(config, scene_, clock_)) {
+  config.reject_unread();
+}
+
+template <int D>
+const StepRecord<D>& Simulation<D>::step() {
+  const StepRecord<D>& record = integrator_->step(dynamics_, clock_);
+  clock_.advance();
+  if (clock_.measuring()) alarm_crossings_ += record.alarm_crossings;
+  const PhaseTimer timer(dynamics_.phases(), Phase::measure);
+  for (auto& observer : observers_)
+    if (observer->is_due(clock_)) observer->measure(clock_, scene_.particles(), record);
+  return record;
+}
+
+template <int D>
+void Simulation<D>::run(const std::function<bool()>& stop, const std::function<void()>& after_step) {
+  while (!clock_.finished() && !stop()) {
+    step();
+    after_step();
+  }
+}
+
+template <int D>
+Frame Simulation<D>::frame() const {
+  const Particles<D>& particles = scene_.particles();
+  Frame frame;
+  frame.dimension = D;
+  frame.step = clock_.step;
+  frame.time = clock_.time();
+  for (int c = 0; c < D; ++c) {
+    frame.box_size.push_back(scene_.box().size[c]);
+    frame.periodic.push_back(scene_.box().is_periodic(c));
+  }
+  for (const SpeciesSettings& s : scene_.settings().species) frame.species_names.push_back(s.name);
+  for (const std::int32_t index : particles.index_of_id()) {
+    const auto i = static_cast<std::size_t>(index);
+    frame.id.push_back(particles.id[i]);
+    frame.species.push_back(particles.species[i]);
+    frame.group.push_back(particles.group[i]);
+    for (std::size_t c = 0; c < D; ++c) {
+      frame.position.push_back(particles.position[i].x[c]);
+      frame.image.push_back(particles.image[i][c]);
+      frame.velocity.push_back(particles.velocity[i].x[c]);
+    }
+  }
+  return frame;
+}
+
+template <int D>
+Results Simulation<D>::results() const {
+  Results results;
+  for (const auto& observer : observers_) observer->add_results(results);
+  if (!scene_.settings().walls.empty())
+    results.scalars.push_back({"alarm_crossings", static_cast<double>(alarm_crossings_), 0.0});
+  return results;
+}
+
+template <int D>
+void Simulation<D>::save(CheckpointWriter& out) const {
+  StateWriter& run = out.component("run");
+  run.write_text("case", config_.resolved());
+  run.write("counts", std::vector<std::int64_t>{clock_.step, alarm_crossings_});
+  const PhaseSeconds& phases = dynamics_.phases();
+  run.write("phase_seconds", std::vector<double>(phases.seconds.begin(), phases.seconds.end()));
+  const SolverStatistics& s = dynamics_.statistics();
+  run.write("solver_counts", std::vector<std::int64_t>{s.solves, s.iterations, s.most_iterations});
+  run.write("solver_worst_residual", std::vector<double>{s.worst_residual});
+  scene_.particles().save(out.component("particles"));
+  integrator_->save(out.component("integrator"));
+  for (std::size_t k = 0; k < observers_.size(); ++k)
+    observers_[k]->save(out.component(fmt::format("observer_{}", k)));
+}
+
+template <int D>
+void Simulation<D>::load(CheckpointReader& in) {
+  const StateReader& run = in.component("run");
+  const Config saved = Config::from_text(run.read_text("case"), "checkpoint");
+  if (const std::string what = difference(saved, config_); !what.empty())
+    throw ConfigError(fmt::format("the checkpoint belongs to another case: {}. A restart may change run.duration, "
+                                  "[solver], [output], [[check]] and the number of threads, nothing else",
+                                  what));
+  const std::vector<std::int64_t> counts = run.read_integers("counts");
+  clock_.step = counts.at(0);
+  alarm_crossings_ = counts.at(1);
+  const std::vector<double> seconds = run.read_doubles("phase_seconds");
+  std::copy(seconds.begin(), seconds.end(), dynamics_.phases().seconds.begin());
+  const std::vector<std::int64_t> solver = run.read_integers("solver_counts");
+  SolverStatistics& s = dynamics_.statistics();
+  s.solves = solver.at(0);
+  s.iterations = solver.at(1);
+  s.most_iterations = solver.at(2);
+  s.worst_residual = run.read_doubles("solver_worst_residual").at(0);
+  scene_.particles().load(in.component("particles"));
+  dynamics_.particles_replaced();
+  integrator_->load(in.component("integrator"));
+  for (std::size_t k = 0; k < observers_.size(); ++k)
+    observers_[k]->load(in.component(fmt::format("observer_{}", k)));
+}
+
+template class Simulation<2>;
+template class Simulation<3>;
+
+}  // namespace odpd

@@ -1,0 +1,148 @@
+#include "odpd/io/csv.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <string_view>
+
+#include "descriptor.h"
+#include "odpd/core/error.h"
+#include "odpd/io/file.h"
+
+namespace odpd {
+
+namespace {
+
+std::string header_line(const std::vector<std::string>& columns) {
+  return fmt::format("{}\n", fmt::join(columns, ","));
+}
+
+/// The shortest digits that read back as the same number.
+void append_line(std::string& out, const std::vector<double>& row) {
+  const char* separator = "";
+  for (const double value : row) {
+    out += separator;
+    // The sign of a NaN depends on the processor; it means nothing.
+    if (std::isnan(value)) {
+      out += "nan";
+    } else {
+      fmt::format_to(std::back_inserter(out), "{}", value);
+    }
+    separator = ",";
+  }
+  out += '\n';
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t\r\n";
+  const auto first = text.find_first_not_of(blank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+std::vector<std::string> fields(std::string_view line) {
+  std::vector<std::string> result;
+  while (true) {
+    const auto comma = line.find(',');
+    result.emplace_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return result;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+}  // namespace
+
+void write_csv(const std::filesystem::path& file, const Table& table) {
+  std::string text;
+  for (const std::string& comment : table.comment) {
+    text += "# ";
+    for (const char letter : comment) {
+      text += letter;
+      if (letter == '\n') text += "# ";
+    }
+    text += '\n';
+  }
+  text += header_line(table.columns);
+  for (const auto& row : table.rows) {
+    if (row.size() != table.columns.size()) {
+      throw IoError(fmt::format("{}: cannot be written: a row of {} values for {} columns ({})",
+                                file.string(), row.size(), table.columns.size(),
+                                fmt::join(table.columns, ",")));
+    }
+    append_line(text, row);
+  }
+  write_file_atomically(file, text);
+}
+
+TextTable read_csv(const std::filesystem::path& file) {
+  const std::string text = read_file(file);
+  std::string_view rest = text;
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // byte order mark of some editors
+  TextTable table;
+  for (std::int64_t number = 1; !rest.empty(); ++number) {
+    const auto end = rest.find('\n');
+    const std::string_view line = trimmed(rest.substr(0, end));
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    if (line.empty() || line.front() == '#') continue;
+    std::vector<std::string> row = fields(line);
+    if (table.columns.empty()) {
+      table.columns = std::move(row);
+      continue;
+    }
+    if (row.size() != table.columns.size()) {
+      throw IoError(fmt::format(
+          "{}:{}: {} values where the header names {} columns ({}); give one value per column",
+          file.string(), number, row.size(), table.columns.size(), fmt::join(table.columns, ",")));
+    }
+    table.rows.push_back(std::move(row));
+    table.line.push_back(number);
+  }
+  if (table.columns.empty()) {
+    throw IoError(fmt::format("{}: is empty; a line with the names of the columns is needed first",
+                              file.string()));
+  }
+  return table;
+}
+
+SeriesFile::SeriesFile(const std::filesystem::path& file, const std::vector<std::string>& columns)
+    : file_(file) {
+  const std::string header = header_line(columns);
+  write_file_atomically(file_, header);
+  bytes_ = static_cast<std::int64_t>(header.size());
+}
+
+SeriesFile::SeriesFile(const std::filesystem::path& file, std::int64_t bytes)
+    : file_(file), bytes_(bytes) {
+  const Descriptor out(file_, O_WRONLY, file_);
+  const auto wanted = static_cast<std::size_t>(bytes);
+  if (out.size() < wanted) {
+    throw IoError(
+        fmt::format("{}: has {} bytes where the checkpoint knows {}: it was cut or "
+                    "replaced since; restore it, or start the run afresh",
+                    file_.string(), out.size(), wanted));
+  }
+  out.truncate(wanted);
+}
+
+void SeriesFile::append(const std::vector<double>& row) { append_line(buffer_, row); }
+
+void SeriesFile::flush(bool sync) {
+  if (buffer_.empty() && !sync) return;
+  Descriptor out(file_, O_WRONLY, file_);
+  try {
+    out.write_at(buffer_.data(), buffer_.size(), static_cast<std::size_t>(bytes_));
+    if (sync) out.sync();
+    out.close();
+  } catch (const IoError&) {
+    // Half a line would be read as a number: cut back to the last whole flush.
+    std::error_code ignored;
+    std::filesystem::resize_file(file_, static_cast<std::uintmax_t>(bytes_), ignored);
+    throw;
+  }
+  bytes_ += static_cast<std::int64_t>(buffer_.size());
+  buffer_.clear();
+}
+
+}  // namespace odpd

@@ -1,0 +1,138 @@
+#include "odpd/io/trajectory.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstdlib>
+#include <optional>
+#include <string_view>
+
+#include "odpd/core/error.h"
+
+namespace odpd {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* all = "/particles/all";
+constexpr std::string_view prefix = "trajectory.";
+constexpr std::string_view suffix = ".h5";
+
+std::string segment_name(std::int64_t number) {
+  return fmt::format("{}{:04}{}", prefix, number, suffix);
+}
+
+/// The number in the name of a segment; none for other files.
+std::optional<std::int64_t> segment_number(std::string_view name) {
+  if (!name.starts_with(prefix) || !name.ends_with(suffix)) return {};
+  if (name.size() <= prefix.size() + suffix.size()) return {};
+  const char* first = name.data() + prefix.size();
+  const char* last = name.data() + name.size() - suffix.size();
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(first, last, number);
+  if (error != std::errc() || end != last || number < 0) return {};
+  return number;
+}
+
+std::string author() {
+  const char* name = std::getenv("USER");
+  return name == nullptr || *name == '\0' ? "unknown" : name;
+}
+
+/// A time-dependent element: its own values, and the step and time shared with the position.
+void create_element(H5Image& image, const std::string& path,
+                    const std::vector<std::int64_t>& row_shape, bool integers) {
+  image.create_rows(path + "/value", row_shape, integers);
+  const std::string owner = std::string(all) + "/position";
+  if (path == owner) {
+    image.create_rows(path + "/step", {}, true);
+    image.create_rows(path + "/time", {}, false);
+  } else {
+    image.hard_link(owner + "/step", path + "/step");
+    image.hard_link(owner + "/time", path + "/time");
+  }
+}
+
+}  // namespace
+
+TrajectorySegments::TrajectorySegments(fs::path directory, std::string case_text,
+                                       std::string version, std::string title)
+    : directory_(std::move(directory)),
+      case_text_(std::move(case_text)),
+      version_(std::move(version)),
+      title_(std::move(title)) {}
+
+void TrajectorySegments::open(const Frame& frame) {
+  image_ = std::make_unique<H5Image>();
+  image_->group("/h5md/author");
+  image_->attribute("/h5md", "version", std::vector<std::int64_t>{1, 1});
+  image_->attribute("/h5md/author", "name", author());
+  image_->group("/h5md/creator");
+  image_->attribute("/h5md/creator", "name", std::string("odpd"));
+  image_->attribute("/h5md/creator", "version", version_);
+
+  image_->write_text("/parameters/odpd/case", case_text_);
+  image_->write_text("/parameters/odpd/version", version_);
+  image_->write_text("/parameters/odpd/title", title_);
+  image_->attribute("/parameters/odpd", "species_names", frame.species_names);
+
+  const auto count = static_cast<std::int64_t>(frame.id.size());
+  const std::vector<std::int64_t> vectors{count, frame.dimension};
+  const std::string group = all;
+  create_element(*image_, group + "/position", vectors, false);
+  create_element(*image_, group + "/image", vectors, true);
+  create_element(*image_, group + "/velocity", vectors, false);
+  image_->write(group + "/id", frame.id, {count});
+  image_->write(group + "/species", frame.species, {count});
+  image_->write(group + "/group", frame.group, {count});
+  open_box(frame);
+}
+
+void TrajectorySegments::open_box(const Frame& frame) {
+  const std::string box = std::string(all) + "/box";
+  std::vector<std::string> boundary;
+  for (const bool periodic : frame.periodic) boundary.push_back(periodic ? "periodic" : "none");
+  image_->group(box);
+  image_->attribute(box, "dimension", std::int64_t{frame.dimension});
+  image_->attribute(box, "boundary", boundary);
+  create_element(*image_, box + "/edges", {frame.dimension}, false);
+}
+
+void TrajectorySegments::append(const Frame& frame) {
+  if (image_ == nullptr) open(frame);
+  const std::string group = all;
+  image_->append_row(group + "/position/step", std::vector<std::int64_t>{frame.step});
+  image_->append_row(group + "/position/time", std::vector<double>{frame.time});
+  image_->append_row(group + "/position/value", frame.position);
+  image_->append_row(group + "/image/value", frame.image);
+  image_->append_row(group + "/velocity/value", frame.velocity);
+  image_->append_row(group + "/box/edges/value", frame.box_size);
+}
+
+void TrajectorySegments::close_segment() {
+  if (image_ == nullptr) return;
+  image_->save(directory_ / segment_name(segment_));
+  image_.reset();
+  ++segment_;
+}
+
+void TrajectorySegments::resume_at(std::int64_t segment) {
+  segment_ = segment;
+  image_.reset();
+  std::error_code error;
+  std::vector<fs::path> later;
+  for (const auto& entry : fs::directory_iterator(directory_, error)) {
+    const auto number = segment_number(entry.path().filename().string());
+    if (number && *number >= segment) later.push_back(entry.path());
+  }
+  for (const fs::path& file : later) {
+    if (fs::remove(file, error) || !error) continue;
+    throw IoError(
+        fmt::format("{}: a segment from after the checkpoint cannot be removed: {}; "
+                    "check permissions",
+                    file.string(), error.message()));
+  }
+}
+
+}  // namespace odpd

@@ -1,0 +1,87 @@
+#include "odpd/pairs/dpd.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "odpd/core/error.h"
+#include "odpd/pairs/edge_writer.h"
+
+namespace odpd {
+
+namespace {
+
+void require(bool ok, const char* name, double value, const char* range) {
+  if (!ok) throw ConfigError(fmt::format("DPD parameter {} = {} must be {}", name, value, range));
+}
+
+void validate(const DpdParameters& p) {
+  require(p.a >= 0.0, "a", p.a, "zero or positive");
+  require(p.s_bar > 0.0, "s_bar", p.s_bar, "positive");
+  require(p.gamma >= 0.0, "gamma", p.gamma, "zero or positive");
+  require(p.gamma_perp >= 0.0, "gamma_perp", p.gamma_perp, "zero or positive");
+  require(p.s >= 0.0, "s", p.s, "zero or positive");
+  require(p.cutoff > 0.0, "cutoff", p.cutoff, "positive");
+  require(p.kT >= 0.0, "kT", p.kT, "zero or positive");
+  require(p.gamma_far >= 0.0, "gamma_far", p.gamma_far, "zero or positive");
+  require(p.gamma_far == 0.0 || p.cutoff_far > p.cutoff, "cutoff_far", p.cutoff_far,
+          "larger than the cutoff, to reach particles without neighbours");
+}
+
+// The force of a pair must not depend on which of the two comes first in memory.
+void validate(std::size_t species, const std::vector<DpdParameters>& table) {
+  if (table.size() != species * species)
+    throw ConfigError(fmt::format("DPD parameters of {} pairs of species are given, {} species have {}",
+                                  table.size(), species, species * species));
+  for (std::size_t a = 0; a < species; ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      if (table[a * species + b] != table[b * species + a])
+        throw ConfigError(fmt::format("DPD parameters of species {} with {} must be those of {} with {}", a, b, b, a));
+  for (const DpdParameters& p : table) validate(p);
+}
+
+}  // namespace
+
+template <int D>
+DpdModel<D>::DpdModel(int species, std::vector<DpdParameters> parameters) : species_(species) {
+  validate(static_cast<std::size_t>(species), parameters);
+  for (const DpdParameters& p : parameters) {
+    table_.push_back({p, PowerWeight(p.s_bar), PowerWeight(p.s), PowerWeight(p.s_bar + 1.0)});
+    cutoff_ = std::max({cutoff_, p.cutoff, p.gamma_far > 0.0 ? p.cutoff_far : 0.0});
+    conservative_ = conservative_ || p.a > 0.0;
+    thermal_ = thermal_ || p.kT > 0.0;
+  }
+}
+
+template <int D>
+PairTerms DpdModel<D>::terms(double r, Site site_i, Site site_j) const {
+  const Entry& entry = table_[static_cast<std::size_t>(site_i.species * species_ + site_j.species)];
+  const DpdParameters& p = entry.p;
+  PairTerms t;
+  t.kT = p.kT;
+  const double x = 1.0 - r / p.cutoff;
+  if (x > 0.0) {
+    const double w_d = entry.w_d(x);
+    t.zeta_par = p.gamma * w_d;
+    t.zeta_perp = p.gamma_perp * w_d;
+    if (p.a > 0.0) {
+      t.f_c = p.a * entry.w_c(x);
+      t.k_c = p.s_bar / p.cutoff * (t.f_c / x);
+      t.u = p.a * p.cutoff / (p.s_bar + 1.0) * entry.energy(x);
+    }
+  }
+  if (p.gamma_far > 0.0 && r < p.cutoff_far) t.zeta_par += p.gamma_far * entry.w_d(1.0 - r / p.cutoff_far);
+  return t;
+}
+
+template <int D>
+void DpdModel<D>::write_edges(const PairList<D>& list, const Box<D>& box, std::span<const Vec<D>> positions,
+                              const Particles<D>& particles, PairNetwork<D>& network) const {
+  write_pair_edges([this](double r, Site i, Site j) { return terms(r, i, j); }, cutoff_, list, box, positions,
+                   particles, network);
+}
+
+template class DpdModel<2>;
+template class DpdModel<3>;
+
+}  // namespace odpd

@@ -1,0 +1,191 @@
+#include "odpd/scene/fill.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "odpd/core/error.h"
+#include "odpd/core/random.h"
+#include "odpd/operator/edge_sums.h"
+
+namespace odpd {
+
+namespace {
+
+// Sites of a regular grid over [low, high), counts per direction.
+template <int D>
+std::vector<Vec<D>> grid_sites(const Vec<D>& low, const Vec<D>& high, const std::array<std::int64_t, D>& count) {
+  std::vector<Vec<D>> sites(1, low);
+  for (int c = 0; c < D; ++c) {
+    const std::int64_t n = count[static_cast<std::size_t>(c)];
+    std::vector<Vec<D>> next;
+    next.reserve(sites.size() * static_cast<std::size_t>(n));
+    for (std::int64_t k = 0; k < n; ++k)
+      for (Vec<D> site : sites) {
+        site[c] = low[c] + (high[c] - low[c]) * (static_cast<double>(k) + 0.5) / static_cast<double>(n);
+        next.push_back(site);
+      }
+    sites.swap(next);
+  }
+  return sites;
+}
+
+// The closest to a square or cubic lattice with at least `count` sites, thinned evenly to `count`.
+template <int D>
+std::vector<Vec<D>> lattice(const Vec<D>& low, const Vec<D>& high, std::int64_t count) {
+  double spacing = std::pow(Box<D>{high - low, {}}.volume() / static_cast<double>(count), 1.0 / D);
+  std::array<std::int64_t, D> n{};
+  std::int64_t sites = 0;
+  for (; sites < count; spacing *= 0.999) {
+    sites = 1;
+    for (int c = 0; c < D; ++c) {
+      n[static_cast<std::size_t>(c)] =
+          std::max<std::int64_t>(1, static_cast<std::int64_t>(std::floor((high[c] - low[c]) / spacing + 1e-9)));
+      sites *= n[static_cast<std::size_t>(c)];
+    }
+  }
+  const std::vector<Vec<D>> all = grid_sites<D>(low, high, n);
+  std::vector<Vec<D>> chosen;
+  for (std::int64_t k = 0; k < count; ++k) chosen.push_back(all[static_cast<std::size_t>(k * sites / count)]);
+  return chosen;
+}
+
+template <int D>
+std::vector<Vec<D>> random_points(std::uint64_t seed, const Vec<D>& low, const Vec<D>& high, std::int64_t count) {
+  const CounterRandom random(seed, Stream::start_positions);
+  std::vector<Vec<D>> points(static_cast<std::size_t>(count));
+  for (std::int64_t k = 0; k < count; ++k) {
+    const auto u = random.uniforms(0, 0, static_cast<std::uint64_t>(k), 0);
+    for (int c = 0; c < D; ++c)
+      points[static_cast<std::size_t>(k)][c] = low[c] + (high[c] - low[c]) * u[static_cast<std::size_t>(c)];
+  }
+  return points;
+}
+
+// Species of `count` particles, mixed at random: exact counts first, the rest by fractions.
+std::vector<std::int32_t> assign_species(const std::vector<SpeciesSettings>& species, std::uint64_t seed,
+                                         std::int64_t count) {
+  std::int64_t fixed = 0;
+  for (const SpeciesSettings& s : species) fixed += std::max<std::int64_t>(s.count, 0);
+  if (fixed > count)
+    throw ConfigError(fmt::format("[[species]]: the counts add up to {}, but the fluid has {} particles; lower them or "
+                                  "raise fluid.count or fluid.density",
+                                  fixed, count));
+  const bool by_fraction = std::any_of(species.begin(), species.end(), [](const auto& s) { return s.count < 0; });
+  if (!by_fraction && fixed != count)
+    throw ConfigError(fmt::format("[[species]]: the counts add up to {}, but the fluid has {} particles; make them equal "
+                                  "or give one species a fraction",
+                                  fixed, count));
+  std::vector<std::int32_t> list;
+  double share = 0.0;
+  std::int64_t given = 0;
+  for (std::size_t k = 0; k < species.size(); ++k) {
+    std::int64_t n = species[k].count;
+    if (n < 0) {
+      share += species[k].fraction;
+      n = std::llround(share * static_cast<double>(count - fixed)) - given;
+      given += n;
+    }
+    list.insert(list.end(), static_cast<std::size_t>(n), static_cast<std::int32_t>(k));
+  }
+  const CounterRandom random(seed, Stream::start_species);
+  for (std::size_t k = list.size(); k > 1; --k) {  // Fisher-Yates
+    const double u = random.uniforms(0, 0, k, 0)[0];
+    std::swap(list[k - 1], list[static_cast<std::size_t>(u * static_cast<double>(k))]);
+  }
+  return list;
+}
+
+template <int D>
+void check_start_positions(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<D>& high) {
+  for (std::size_t k = 0; k < settings.start_positions.size(); ++k)
+    for (int c = 0; c < D; ++c) {
+      const double x = settings.start_positions[k][c];
+      if (!std::isfinite(x) || (!settings.box.is_periodic(c) && (x < low[c] || x > high[c])))
+        throw ConfigError(fmt::format("{}: particle {} lies at {} = {}, but the fluid reaches from {} to {}",
+                                      settings.start_file, k, "xyz"[c], x, low[c], high[c]));
+    }
+}
+
+}  // namespace
+
+template <int D>
+void place_walls(const SceneSettings<D>& settings, Particles<D>& particles) {
+  for (std::size_t w = 0; w < settings.walls.size(); ++w) {
+    const WallSettings<D>& wall = settings.walls[w];
+    for (const WallLayer& layer : wall.layers) {
+      std::array<std::int64_t, D> count{};
+      for (int c = 0; c < D; ++c)
+        count[static_cast<std::size_t>(c)] =
+            c == wall.axis    ? 1
+            : layer.count > 0 ? layer.count
+                              : std::max<std::int64_t>(1, std::llround(settings.box.size[c] / layer.spacing));
+      for (Vec<D> site : grid_sites<D>(Vec<D>{}, settings.box.size, count)) {
+        const double from_end = wall.thickness - layer.depth;
+        site[wall.axis] = wall.high ? settings.box.size[wall.axis] - from_end : from_end;
+        particles.add(site, wall.species, static_cast<std::int32_t>(w) + 1);
+      }
+    }
+  }
+}
+
+template <int D>
+void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<D>& high, Particles<D>& particles) {
+  std::vector<Vec<D>> points;
+  std::vector<std::int32_t> species = settings.start_species;
+  if (settings.start == StartKind::file) {
+    check_start_positions(settings, low, high);
+    points = settings.start_positions;
+  } else {
+    const double volume = Box<D>{high - low, {}}.volume();
+    const std::int64_t count = settings.count > 0 ? settings.count : std::llround(settings.density * volume);
+    if (count < 1) throw ConfigError("the fluid has no particles: raise fluid.density or the box");
+    points = settings.start == StartKind::lattice ? lattice(low, high, count)
+                                                  : random_points(settings.seed, low, high, count);
+  }
+  if (species.empty())
+    species = assign_species(settings.species, settings.seed, static_cast<std::int64_t>(points.size()));
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    particles.add(points[k], species[k], 0);
+    settings.box.wrap(particles.position.back());
+  }
+}
+
+template <int D>
+void relax(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& surroundings, std::int64_t sweeps,
+           Particles<D>& particles) {
+  if (!model.conservative()) return;
+  PairList<D> list(box, model.cutoff(), 0.4 * model.cutoff());
+  PairNetwork<D> network;
+  const double longest = 0.05 * model.cutoff();
+  for (std::int64_t sweep = 0; sweep < sweeps; ++sweep) {
+    list.update(particles.position);
+    model.write_edges(list, box, particles.position, particles, network);
+    std::vector<Vec<D>> force(particles.position.size());
+    std::vector<double> stiffness(particles.position.size(), 0.0);
+    add_conservative_forces(network, force);
+    surroundings.add_potential_forces(particles, particles.position, force);
+    surroundings.potential_energy(particles, particles.position, stiffness);
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      for (const std::int32_t edge : network.edges_of(static_cast<std::int64_t>(i)))
+        stiffness[i] += network.k_c[static_cast<std::size_t>(edge)];
+      const double size = norm(force[i]);
+      if (!particles.is_free(i) || size == 0.0) continue;
+      const double path = stiffness[i] > 0.0 ? std::min(size / stiffness[i], longest) : longest;
+      particles.position[i] += path / size * force[i];
+      box.wrap(particles.position[i]);
+      surroundings.confine(particles.position[i]);
+    }
+  }
+}
+
+template void place_walls<2>(const SceneSettings<2>&, Particles<2>&);
+template void place_walls<3>(const SceneSettings<3>&, Particles<3>&);
+template void place_fluid<2>(const SceneSettings<2>&, const Vec<2>&, const Vec<2>&, Particles<2>&);
+template void place_fluid<3>(const SceneSettings<3>&, const Vec<3>&, const Vec<3>&, Particles<3>&);
+template void relax<2>(const Box<2>&, const PairModel<2>&, const Surroundings<2>&, std::int64_t, Particles<2>&);
+template void relax<3>(const Box<3>&, const PairModel<3>&, const Surroundings<3>&, std::int64_t, Particles<3>&);
+
+}  // namespace odpd

@@ -1,0 +1,243 @@
+#include "odpd/scene/scene_settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+namespace odpd {
+
+namespace {
+
+template <int D>
+Vec<D> read_vector(const Config& config, const std::string& key, const std::vector<double>& values) {
+  if (values.size() != D)
+    config.fail(key, fmt::format("{} components are needed in {} dimensions, there are {}", D, D, values.size()));
+  Vec<D> v;
+  for (int c = 0; c < D; ++c) v[c] = values[static_cast<std::size_t>(c)];
+  return v;
+}
+
+template <int D>
+Vec<D> read_optional_vector(const Config& config, const std::string& key) {
+  return read_vector<D>(config, key, config.numbers(key, std::vector<double>(D, 0.0)));
+}
+
+template <int D>
+Box<D> read_box(const Config& config) {
+  Box<D> box;
+  box.size = read_vector<D>(config, "size", config.numbers("size"));
+  for (int c = 0; c < D; ++c)
+    if (!(box.size[c] > 0.0)) config.fail("size", "every edge of the box must be positive");
+  const std::vector<bool> periodic = config.booleans("periodic");
+  if (periodic.size() != D)
+    config.fail("periodic", fmt::format("{} flags are needed, there are {}", D, periodic.size()));
+  for (std::size_t c = 0; c < D; ++c) box.periodic[c] = periodic[c];
+  return box;
+}
+
+// Keys of one pair of species, `base` where they are absent.
+DpdParameters read_pair(const Config& config, const DpdParameters& base, bool required) {
+  DpdParameters p = base;
+  p.kT = required ? config.non_negative("kT") : base.kT;
+  p.cutoff = config.positive("cutoff", base.cutoff);
+  p.a = required ? config.non_negative("a") : config.non_negative("a", base.a);
+  p.s_bar = config.positive("s_bar", base.s_bar);
+  p.s = config.non_negative("s", base.s);
+  p.gamma_perp = config.non_negative("gamma_perp", base.gamma_perp);
+  if (config.has("gamma") && config.has("sigma"))
+    config.fail("sigma", "give gamma or sigma, never both: sigma^2 = 2 gamma kT");
+  if (config.has("sigma")) {
+    const double sigma = config.positive("sigma");
+    if (p.kT == 0.0) config.fail("sigma", "at kT = 0 there is no noise to set the friction by: give gamma");
+    p.gamma = sigma * sigma / (2.0 * p.kT);
+  } else if (required || config.has("gamma")) {
+    p.gamma = config.positive("gamma");
+  }
+  return p;
+}
+
+std::vector<SpeciesSettings> read_species(const Config& config) {
+  std::vector<SpeciesSettings> species;
+  for (const Config& entry : config.tables("species")) {
+    SpeciesSettings s;
+    s.name = entry.text("name");
+    for (const SpeciesSettings& other : species)
+      if (other.name == s.name) entry.fail("name", fmt::format("species '{}' stands here twice", s.name));
+    if (entry.has("count") && entry.has("fraction")) entry.fail("count", "give count or fraction, never both");
+    if (entry.has("count")) {
+      s.count = entry.integer("count");
+      if (s.count < 0) entry.fail("count", "must be zero or positive");
+      s.fraction = 0.0;
+    } else {
+      s.fraction = entry.non_negative("fraction", 1.0);
+    }
+    species.push_back(s);
+  }
+  if (species.empty()) species.emplace_back();
+  double total = 0.0;
+  bool by_fraction = false;
+  for (const SpeciesSettings& s : species) {
+    total += s.fraction;
+    by_fraction = by_fraction || s.count < 0;
+  }
+  if (by_fraction && std::abs(total - 1.0) > 1e-9)
+    config.fail("species", fmt::format("the fractions add up to {}: they must add up to 1", total));
+  return species;
+}
+
+template <int D>
+void read_fluid(const Config& config, SceneSettings<D>& scene) {
+  const Config fluid = config.table("fluid");
+  fluid.choice("model", {"dpd"}, "dpd");
+  const double mass = fluid.non_negative("mass", 0.0);
+  if (mass != 0.0)
+    fluid.fail("mass", "this version solves the massless case only (its integrators are trapezoidal and euler): set "
+                       "mass = 0.0");
+  if (fluid.has("density") && fluid.has("count")) fluid.fail("count", "give density or count, never both");
+  if (fluid.has("count")) {
+    scene.count = fluid.integer("count");
+    if (scene.count < 1) fluid.fail("count", "must be positive");
+  } else if (scene.start != StartKind::file || fluid.has("density")) {
+    scene.density = fluid.positive("density");
+  }
+  DpdParameters base = read_pair(fluid, DpdParameters{}, true);
+  if (fluid.has("rattler_friction")) {
+    const Config far = fluid.table("rattler_friction");
+    base.gamma_far = far.positive("gamma");
+    base.cutoff_far = far.positive("cutoff");
+    if (base.cutoff_far <= base.cutoff)
+      far.fail("cutoff", fmt::format("must be larger than fluid.cutoff = {}, to reach particles without neighbours",
+                                     base.cutoff));
+  }
+  const std::size_t n = scene.species.size();
+  scene.pairs.assign(n * n, base);
+  for (const Config& entry : config.tables("pair")) {
+    const std::vector<std::string> names = entry.texts("species");
+    if (names.size() != 2) entry.fail("species", "two names are needed");
+    const auto a = static_cast<std::size_t>(species_index(scene.species, entry, "species", names[0]));
+    const auto b = static_cast<std::size_t>(species_index(scene.species, entry, "species", names[1]));
+    const DpdParameters p = read_pair(entry, base, false);
+    scene.pairs[a * n + b] = p;
+    scene.pairs[b * n + a] = p;
+  }
+}
+
+template <int D>
+std::vector<WallLayer> read_layers(const Config& wall, double thickness) {
+  std::vector<WallLayer> layers;
+  for (const Config& entry : wall.tables("layers")) {
+    WallLayer layer;
+    layer.depth = entry.non_negative("depth");
+    if (layer.depth > thickness)
+      entry.fail("depth", fmt::format("the layer lies outside the box: depth must be at most thickness = {}", thickness));
+    if (entry.has("count") == entry.has("spacing")) entry.fail("count", "give count or spacing, one of them");
+    if (entry.has("count")) {
+      layer.count = entry.integer("count");
+      if (layer.count < 1) entry.fail("count", "must be positive");
+      if (D != 2) entry.fail("count", "a layer of a 3D wall is a grid: give spacing instead");
+    } else {
+      layer.spacing = entry.positive("spacing");
+    }
+    layers.push_back(layer);
+  }
+  if (layers.empty())
+    wall.fail("layers",
+              "a wall needs at least one layer of frozen particles, e.g. layers = [{ depth = 0.0, spacing = 0.2 }]: "
+              "without their friction nothing holds a massless fluid");
+  return layers;
+}
+
+template <int D>
+WallSettings<D> read_wall(const Config& entry, const SceneSettings<D>& scene) {
+  std::vector<std::string> sides;
+  for (int c = 0; c < D; ++c)
+    for (const char end : {'-', '+'}) sides.push_back(fmt::format("{}{}", "xyz"[c], end));
+  const std::string side = entry.choice("side", sides);
+  WallSettings<D> wall;
+  wall.axis = side[0] - 'x';
+  wall.high = side[1] == '+';
+  if (scene.box.is_periodic(wall.axis))
+    entry.fail("side", fmt::format("direction {} is periodic (box.periodic): a wall contradicts it", side[0]));
+  if (scene.wall_at(wall.axis, wall.high) >= 0) entry.fail("side", fmt::format("there are two walls at {}", side));
+  wall.thickness = entry.positive("thickness", 1.0);
+  if (wall.thickness >= 0.5 * scene.box.size[wall.axis])
+    entry.fail("thickness", "the wall fills half of the box or more: nothing is left for the fluid");
+  wall.velocity = read_optional_vector<D>(entry, "velocity");
+  if (wall.velocity[wall.axis] != 0.0)
+    entry.fail("velocity", fmt::format("a wall moves along itself: component {} must be 0", side[0]));
+  for (int c = 0; c < D; ++c)
+    if (wall.velocity[c] != 0.0 && !scene.box.is_periodic(c))
+      entry.fail("velocity", fmt::format("a wall that moves in direction {} needs that direction periodic", "xyz"[c]));
+  wall.layers = read_layers<D>(entry, wall.thickness);
+  wall.species = species_index(scene.species, entry, "species", entry.text("species", scene.species[0].name));
+  wall.stiffness = entry.positive("stiffness", wall.stiffness);
+  return wall;
+}
+
+template <int D>
+void read_walls(const Config& config, SceneSettings<D>& scene) {
+  for (const Config& entry : config.tables("wall")) scene.walls.push_back(read_wall(entry, scene));
+  for (int c = 0; c < D; ++c)
+    for (const bool high : {false, true})
+      if (!scene.box.is_periodic(c) && scene.wall_at(c, high) < 0)
+        config.table("box").fail("periodic", fmt::format("direction {} is bounded but has no wall at its {} end: add "
+                                                         "[[wall]] with side = \"{}{}\", or make it periodic",
+                                                         "xyz"[c], high ? "upper" : "lower", "xyz"[c],
+                                                         high ? '+' : '-'));
+}
+
+template <int D>
+void read_start(const Config& config, SceneSettings<D>& scene) {
+  const Config start = config.table("start");
+  const std::string from = start.choice("from", {"random", "lattice", "file"}, "random");
+  scene.start = from == "random" ? StartKind::random : from == "lattice" ? StartKind::lattice : StartKind::file;
+  if (scene.start == StartKind::file) scene.start_file = (config.directory() / start.text("file")).string();
+  scene.relax_sweeps = start.integer("relax_sweeps", scene.start == StartKind::random ? 100 : 0);
+  if (scene.relax_sweeps < 0) start.fail("relax_sweeps", "must be zero or positive");
+}
+
+}  // namespace
+
+std::int32_t species_index(const std::vector<SpeciesSettings>& species, const Config& where, const std::string& key,
+                           const std::string& name) {
+  std::vector<std::string> names;
+  for (const SpeciesSettings& s : species) names.push_back(s.name);
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (names[k] == name) return static_cast<std::int32_t>(k);
+  where.fail(key, fmt::format("there is no species '{}': the scene has {}", name, fmt::join(names, ", ")));
+}
+
+template <int D>
+int SceneSettings<D>::wall_at(int axis, bool high) const {
+  for (std::size_t w = 0; w < walls.size(); ++w)
+    if (walls[w].axis == axis && walls[w].high == high) return static_cast<int>(w);
+  return -1;
+}
+
+template <int D>
+SceneSettings<D> read_scene_settings(const Config& config) {
+  SceneSettings<D> scene;
+  const std::int64_t seed = config.integer("seed", 1);
+  if (seed < 0) config.fail("seed", "must be zero or positive");
+  scene.seed = static_cast<std::uint64_t>(seed);
+  scene.box = read_box<D>(config.table("box"));
+  scene.species = read_species(config);
+  read_start(config, scene);
+  read_fluid(config, scene);
+  read_walls(config, scene);
+  const Config body_force = config.table("body_force");
+  scene.body_force = read_optional_vector<D>(body_force, "force");
+  const bool driven = dot(scene.body_force, scene.body_force) > 0.0;
+  if (driven && scene.walls.empty())
+    body_force.fail("force", "in a fully periodic box nothing balances a net force, so a massless fluid has no answer: "
+                             "add walls, or remove the force");
+  return scene;
+}
+
+template struct SceneSettings<2>;
+template struct SceneSettings<3>;
+template SceneSettings<2> read_scene_settings<2>(const Config&);
+template SceneSettings<3> read_scene_settings<3>(const Config&);
+
+}  // namespace odpd

@@ -1,0 +1,101 @@
+#include "odpd/solvers/assembled_solver.h"
+
+#include <algorithm>
+
+#include "odpd/core/timer.h"
+#include "odpd/solvers/backends.h"
+#include "odpd/solvers/preconditioner.h"
+
+namespace odpd {
+
+namespace {
+
+std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+/// E^T x: the sum of each component.
+std::vector<double> component_sums(std::span<const double> x, std::size_t block) {
+  std::vector<double> sum(block, 0.0);
+  for (std::size_t i = 0; i < x.size(); i += block) {
+    for (std::size_t k = 0; k < block; ++k) sum[k] += x[i + k];
+  }
+  return sum;
+}
+
+}  // namespace
+
+void AssembledSolver::set_up() {
+  response_.clear();
+  const Stopwatch watch;
+  const BlockCsr& a = system_->matrix();
+  assembly_seconds_ = watch.seconds();
+  set_up_matrix(a);
+}
+
+/// Solves A Z = E and inverts E^T Z.
+Solver::Attempt AssembledSolver::find_response(double tolerance) {
+  const std::size_t block = index(system_->block_size());
+  const std::size_t size = index(system_->size());
+  std::vector<std::vector<double>> response;
+  inverse_schur_.assign(block * block, 0.0);
+  Attempt total;
+  const std::int64_t budget = iterations_left_;
+  for (std::size_t k = 0; k < block; ++k) {
+    std::vector<double> translation(size, 0.0);
+    for (std::size_t i = k; i < size; i += block) translation[i] = 1.0;
+    std::vector<double> z(size, 0.0);
+    const Attempt one = attempt_free(translation, z, std::max(0.1 * tolerance, 1e-14));
+    total.iterations += one.iterations;
+    total.failure = one.failure;
+    if (!one.ok) return total;
+    iterations_left_ = budget - total.iterations;
+    const std::vector<double> sum = component_sums(z, block);
+    for (std::size_t i = 0; i < block; ++i) inverse_schur_[i * block + k] = sum[i];
+    response.push_back(std::move(z));
+  }
+  if (!invert_definite(inverse_schur_, system_->block_size())) {
+    total.failure = not_definite;
+    return total;
+  }
+  response_ = std::move(response);
+  total.ok = true;
+  return total;
+}
+
+/// x -= Z (E^T Z)^-1 E^T x.
+void AssembledSolver::hold_centre(std::span<double> x) const {
+  const std::size_t block = index(system_->block_size());
+  const std::vector<double> sum = component_sums(x, block);
+  for (std::size_t k = 0; k < block; ++k) {
+    double force = 0.0;
+    for (std::size_t j = 0; j < block; ++j) force += inverse_schur_[k * block + j] * sum[j];
+    const std::vector<double>& z = response_[k];
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] -= force * z[i];
+  }
+}
+
+Solver::Attempt AssembledSolver::attempt(std::span<const double> b, std::span<double> x,
+                                         double tolerance) {
+  if (!system_->holds_centre_of_mass()) return attempt_free(b, x, tolerance);
+  const std::int64_t budget = iterations_left_;
+  std::int64_t spent = 0;
+  if (response_.empty()) {
+    const Attempt response = find_response(tolerance);
+    if (!response.ok) return response;
+    spent = response.iterations;
+  }
+  iterations_left_ = budget - spent;
+  Attempt result = attempt_free(b, x, tolerance);
+  result.iterations += spent;
+  if (result.ok) hold_centre(x);
+  return result;
+}
+
+std::int64_t AssembledSolver::memory_bytes() const {
+  const BlockCsr& a = system_->matrix();
+  const std::size_t matrix =
+      (a.start.size() + a.column.size()) * sizeof(std::int32_t) + a.value.size() * sizeof(double);
+  const std::size_t response = response_.size() * index(system_->size()) * sizeof(double);
+  return backend_bytes() + static_cast<std::int64_t>(matrix + response);
+}
+
+}  // namespace odpd

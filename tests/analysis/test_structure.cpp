@@ -1,0 +1,224 @@
+// The observers of positions: radial distribution, mean-square displacement, density residual.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "odpd/analysis/density_residual.h"
+#include "odpd/analysis/least_squares.h"
+#include "odpd/analysis/msd.h"
+#include "odpd/analysis/rdf.h"
+#include "records.h"
+#include "support/dimensions.h"
+#include "support/memory_archive.h"
+
+namespace {
+
+using odpd::Clock;
+using odpd::DensityResidual;
+using odpd::Msd;
+using odpd::MsdSettings;
+using odpd::Rdf;
+using odpd::Scene;
+using odpd::StepRecord;
+using odpd::Vec;
+
+template <class T>
+class StructureTest : public ::testing::Test {};
+TYPED_TEST_SUITE(StructureTest, support::Dimensions);
+
+template <int D>
+double ball(double r) {
+  return D == 2 ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r;
+}
+
+// Independent uniform positions. Pairs are pairwise independent, so the number in a bin over all
+// samples has the standard error sqrt(n); bound 5 of them per bin, and of the sum of all bins.
+TYPED_TEST(StructureTest, AnIdealGasHasNoStructure) {
+  constexpr int D = TypeParam::D;
+  constexpr std::size_t n = 60, samples = 200, bins = 20;
+  const Vec<D> size = support::uniform_vec<D>(4.0);
+  auto s = records::periodic<D>(4.0, support::random_points<D>(Vec<D>{}, size, n, 0));
+  s.species = {{.name = "a", .fraction = 0.5}, {.name = "b", .fraction = 0.5}};
+  s.pairs.assign(4, s.pairs[0]);
+  const Scene<D> scene(s);
+  Rdf<D> rdf({.kind = "rdf", .name = "g"}, 2.0, bins, scene);
+  StepRecord<D> record;
+  for (std::size_t t = 0; t < samples; ++t) {
+    record.start.position = support::random_points<D>(Vec<D>{}, size, n, 1000 + t);
+    rdf.measure(Clock{}, scene.particles(), record);
+  }
+  EXPECT_EQ(rdf.series_row().size(), rdf.series_columns().size());
+  const auto results = records::results(rdf);
+  ASSERT_EQ(results.tables.size(), 1u);
+  const odpd::Table& table = results.tables[0].second;
+  EXPECT_EQ(table.columns, (std::vector<std::string>{"r", "g_a_a", "g_a_a_error", "g_a_b",
+                                                     "g_a_b_error", "g_b_b", "g_b_b_error"}));
+  const std::array<double, 3> pairs{30 * 29 / 2.0, 30 * 30.0, 30 * 29 / 2.0};
+  double counted = 0.0, expected_in_all = 0.0;
+  for (std::size_t k = 0; k < bins; ++k) {
+    const double r = 0.1 * static_cast<double>(k);
+    EXPECT_NEAR(table.rows[k][0], r + 0.05, 1e-14);
+    for (std::size_t p = 0; p < 3; ++p) {
+      const double expected = samples * pairs[p] * (ball<D>(r + 0.1) - ball<D>(r)) / size[0] /
+                              size[1] / (D == 3 ? size[D - 1] : 1.0);
+      EXPECT_NEAR(table.rows[k][2 * p + 1], 1.0, 5.0 / std::sqrt(expected) + 1.0 / expected)
+          << "bin " << k << ", pair " << p;
+      counted += expected * table.rows[k][2 * p + 1];
+      expected_in_all += expected;
+    }
+  }
+  EXPECT_NEAR(counted / expected_in_all, 1.0, 5.0 / std::sqrt(expected_in_all));
+}
+
+TYPED_TEST(StructureTest, OnePairFillsOneBin) {
+  constexpr int D = TypeParam::D;
+  std::vector<Vec<D>> r(2, support::uniform_vec<D>(0.1));
+  r[1][0] = 3.0;  // 1.1 away through the border
+  const Scene<D> scene(records::periodic<D>(4.0, r));
+  Rdf<D> rdf({.kind = "rdf", .name = "g"}, 2.0, 5, scene);
+  rdf.measure(Clock{}, scene.particles(), records::record(scene));
+  const auto row = rdf.series_row();
+  for (std::size_t k = 0; k < 5; ++k) {
+    const double shell = ball<D>(1.2) - ball<D>(0.8);
+    EXPECT_NEAR(row[k], k == 2 ? std::pow(4.0, D) / shell : 0.0, 1e-10);
+  }
+}
+
+// A scene whose free particles are moved by hand; the image counters carry the crossings.
+template <int D>
+struct Walkers {
+  Scene<D> scene;
+  StepRecord<D> record;
+
+  explicit Walkers(std::size_t n)
+      : scene(records::periodic<D>(
+            4.0, support::random_points<D>(Vec<D>{}, support::uniform_vec<D>(4.0), n, 1))) {}
+  template <class Step>
+  void run(Msd<D>& msd, int steps, const Step& step) {
+    auto& p = scene.particles();
+    for (int t = 0; t < steps; ++t) {
+      if (t > 0) {
+        for (std::size_t i = 0; i < p.position.size(); ++i) {
+          p.position[i] += step(static_cast<std::size_t>(p.id[i]), static_cast<std::size_t>(t));
+          scene.box().wrap(p.position[i], p.image[i]);
+        }
+      }
+      if (t % 7 == 3) p.reorder(support::random_order(p.position.size(), static_cast<unsigned>(t)));
+      msd.measure(Clock{}, p, record);
+    }
+  }
+};
+
+template <int D>
+MsdSettings all_directions() {
+  MsdSettings m{.window = 1.0, .fit_from = 0.3, .directions = {}};
+  for (int c = 0; c < D; ++c) m.directions.push_back(c);
+  return m;
+}
+
+// Straight flight with velocity v: msd = v^2 t^2 exactly, through the borders and through reordering.
+TYPED_TEST(StructureTest, BallisticFlight) {
+  constexpr int D = TypeParam::D;
+  Walkers<D> walkers(20);
+  Msd<D> msd({.kind = "msd", .name = "msd"}, all_directions<D>(), walkers.scene, 0.1);
+  const auto velocity = support::random_vectors<D>(20, 3);
+  walkers.run(msd, 60, [&](std::size_t id, std::size_t) { return 0.1 * velocity[id]; });
+  double square = 0.0;
+  for (const auto& v : velocity) square += dot(v, v) / 20.0;
+  const auto results = records::results(msd);
+  const odpd::Table& table = results.tables[0].second;
+  ASSERT_EQ(table.rows.size(), 10u);
+  std::vector<double> t, y;
+  for (std::size_t k = 0; k < 10; ++k) {
+    const double lag = 0.1 * static_cast<double>(k + 1);
+    EXPECT_NEAR(table.rows[k][0], lag, 1e-12);
+    EXPECT_NEAR(table.rows[k][1], square * lag * lag, 1e-11);
+    if (k < 2) continue;
+    t.push_back(lag);
+    y.push_back(square * lag * lag);
+  }
+  const double slope = odpd::fit_polynomial(1, t, y, std::vector<double>(t.size(), 1.0)).coefficient[1];
+  EXPECT_NEAR(records::mean(results, "diffusion"), slope / (2 * D), 1e-10);
+  EXPECT_LT(records::error(results, "diffusion"), 1e-10);
+}
+
+// Independent steps of variance 2 D dt per direction, D = 0.8. The slope over a window of 10 lags from
+// N = 60 particles and T = 400 samples: the relative standard error is near sqrt(10/(N T d)) = 1.4 to
+// 1.7 %; bound 5 times the reported error, which must be of that size.
+TYPED_TEST(StructureTest, ARandomWalkDiffuses) {
+  constexpr int D = TypeParam::D;
+  constexpr double diffusion = 0.8, dt = 0.1;
+  Walkers<D> walkers(60);
+  Msd<D> msd({.kind = "msd", .name = "msd"}, all_directions<D>(), walkers.scene, dt);
+  walkers.run(msd, 400, [&](std::size_t id, std::size_t t) {
+    return std::sqrt(2.0 * diffusion * dt) * support::random_vectors<D>(60, t)[id];
+  });
+  const auto results = records::results(msd);
+  const double error = records::error(results, "diffusion");
+  EXPECT_GT(error, 0.004 * diffusion);
+  EXPECT_LT(error, 0.05 * diffusion);
+  EXPECT_NEAR(records::mean(results, "diffusion"), diffusion, 5.0 * error);
+}
+
+TEST(Msd, CountsTheDirectionsAskedAndEverySpecies) {
+  Walkers<2> walkers(10);
+  MsdSettings m{.window = 0.5, .fit_from = 0.2, .directions = {1}};
+  Msd<2> msd({.kind = "msd", .name = "across"}, m, walkers.scene, 0.1);
+  walkers.run(msd, 40, [](std::size_t, std::size_t) { return Vec<2>{{1.3, 0.1}}; });
+  const auto results = records::results(msd);
+  EXPECT_NEAR(results.tables[0].second.rows[4][1], 0.25, 1e-12) << "x does not count";
+  EXPECT_NE(results.find("across.diffusion"), nullptr);
+}
+
+TEST(Msd, AShortRunSaysSo) {
+  Walkers<2> walkers(10);
+  Msd<2> msd({.kind = "msd", .name = "msd"}, all_directions<2>(), walkers.scene, 0.1);
+  walkers.run(msd, 10, [](std::size_t, std::size_t) { return Vec<2>{}; });
+  const auto results = records::results(msd);
+  EXPECT_TRUE(std::isnan(records::mean(results, "diffusion")));
+  EXPECT_FALSE(results.notes.empty());
+}
+
+TEST(Msd, SaveAndLoadMidStream) {
+  const auto step = [](std::size_t id, std::size_t t) {
+    return 0.3 * support::random_vectors<2>(10, t)[id];
+  };
+  Walkers<2> walkers(10);
+  const auto make = [&] {
+    return Msd<2>({.kind = "msd", .name = "msd"}, all_directions<2>(), walkers.scene, 0.1);
+  };
+  Msd<2> through = make(), copy = make();
+  walkers.run(through, 57, step);
+  support::MemoryArchive archive;
+  through.save(archive);
+  copy.load(archive);
+  for (int t = 0; t < 100; ++t) {
+    walkers.scene.particles().position[static_cast<std::size_t>(t) % 10][0] += 0.01;
+    through.measure(Clock{}, walkers.scene.particles(), walkers.record);
+    copy.measure(Clock{}, walkers.scene.particles(), walkers.record);
+  }
+  const auto a = records::results(through), b = records::results(copy);
+  EXPECT_EQ(records::mean(a, "diffusion"), records::mean(b, "diffusion"));
+  EXPECT_EQ(records::error(a, "diffusion"), records::error(b, "diffusion"));
+}
+
+// Counts 3, 1, 0, 0 in bins of volume 1: mean 1, squares 4 + 0 + 1 + 1 = 6.
+TEST(DensityResidual, FourParticlesInFourBins) {
+  const std::vector<Vec<2>> r{{{0.1, 0.1}}, {{0.9, 0.5}}, {{0.5, 0.9}}, {{1.5, 0.5}}};
+  auto s = records::periodic<2>(2.0, r);
+  const Scene<2> scene(s);
+  DensityResidual<2> residual({.kind = "density-residual", .name = "n"}, {2, 2}, scene);
+  StepRecord<2> record;
+  record.start.position = r;
+  residual.measure(Clock{}, scene.particles(), record);
+  EXPECT_NEAR(residual.series_row()[0], std::sqrt(6.0) / 4.0, 1e-14);
+  EXPECT_NEAR(residual.series_row()[1], std::sqrt(6.0 / 4.0), 1e-14);
+  // Moved to the other bins in a second sample, the averages are 1.5, 0.5, 1.5, 0.5.
+  record.start.position = {{{0.1, 1.1}}, {{0.9, 1.5}}, {{0.5, 1.9}}, {{1.5, 1.5}}};
+  residual.measure(Clock{}, scene.particles(), record);
+  const auto results = records::results(residual);
+  EXPECT_NEAR(records::mean(results, "n.thesis"), 0.5, 1e-14);
+  EXPECT_NEAR(records::mean(results, "n.paper"), 0.25, 1e-14);
+}
+
+}  // namespace

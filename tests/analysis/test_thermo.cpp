@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+
+#include "odpd/analysis/thermo.h"
+#include "records.h"
+#include "support/dimensions.h"
+#include "support/memory_archive.h"
+
+namespace {
+
+using odpd::Clock;
+using odpd::Scene;
+using odpd::Thermo;
+using odpd::Vec;
+
+template <class T>
+class ThermoTest : public ::testing::Test {};
+TYPED_TEST_SUITE(ThermoTest, support::Dimensions);
+
+// Two particles 0.6 apart: u = a/2 0.4^2, f = 0.4 a, k = a, lap = k - (d - 1) f/r for each.
+TYPED_TEST(ThermoTest, APair) {
+  constexpr int D = TypeParam::D;
+  std::vector<Vec<D>> r(2, support::uniform_vec<D>(0.2));
+  r[1][0] = 3.6;  // across the border of a box of 4
+  auto s = records::periodic<D>(4.0, r);
+  s.pairs[0].a = 10.0;
+  s.pairs[0].kT = 0.5;
+  const Scene<D> scene(s);
+  Thermo<D> thermo({.kind = "thermo", .name = "thermo"}, scene);
+  thermo.measure(Clock{}, scene.particles(), records::record(scene));
+  const auto results = records::results(thermo);
+  const double volume = std::pow(4.0, D), force = 4.0, laplacian = 10.0 - (D - 1) * force / 0.6;
+  EXPECT_NEAR(records::mean(results, "energy_per_particle"), 0.5 * 5.0 * 0.16, 1e-12);
+  EXPECT_NEAR(records::mean(results, "pressure"), (2 * 0.5 + 0.6 * force / D) / volume, 1e-12);
+  EXPECT_NEAR(records::mean(results, "config_temperature"), force * force / laplacian, 1e-11);
+  EXPECT_TRUE(std::isnan(records::error(results, "pressure"))) << "one sample has no error";
+  EXPECT_EQ(thermo.series_row().size(), thermo.series_columns().size());
+}
+
+// A fluid particle 0.6 behind the surface, right below the only particle of the wall: the edge counts
+// once in the energy, half in the virial, and only the free particle counts in the temperature.
+TYPED_TEST(ThermoTest, AParticleBetweenWalls) {
+  constexpr int D = TypeParam::D;
+  auto s = records::periodic<D>(4.0, {support::uniform_vec<D>(2.0)});
+  records::add_walls(s, 0.0);
+  for (auto& wall : s.walls) {
+    wall.layers = {{.depth = 0.0, .count = 0, .spacing = 4.0}};  // one particle, at 2, 1, 2
+    wall.stiffness = 50.0;
+  }
+  s.pairs[0].a = 10.0;
+  s.pairs[0].kT = 0.5;
+  Scene<D> scene(s);
+  ASSERT_EQ(scene.particles().size(), 3);
+  scene.particles().position[2][1] = 0.4;  // 0.6 below the wall's particle, 0.6 behind its surface
+  Thermo<D> thermo({.kind = "thermo", .name = "second"}, scene);
+  thermo.measure(Clock{}, scene.particles(), records::record(scene));
+  const auto results = records::results(thermo);
+  const double volume = std::pow(4.0, D - 1) * 2.0, push = 50.0 * 0.6 - 4.0;
+  const double laplacian = 10.0 - (D - 1) * 4.0 / 0.6 + 50.0;
+  EXPECT_NEAR(records::mean(results, "second.energy_per_particle"), 0.8 + 25.0 * 0.36, 1e-11);
+  EXPECT_NEAR(records::mean(results, "second.pressure"), (0.5 + 0.5 * 0.6 * 4.0 / D) / volume, 1e-12);
+  EXPECT_NEAR(records::mean(results, "second.config_temperature"), push * push / laplacian, 1e-10);
+}
+
+TEST(Thermo, AnIdealGasHasNoConfigurationalTemperature) {
+  auto s = records::periodic<2>(4.0, {{{1.0, 1.0}}, {{1.5, 1.0}}});
+  s.pairs[0].a = 0.0;
+  const Scene<2> scene(s);
+  Thermo<2> thermo({.kind = "thermo", .name = "thermo"}, scene);
+  EXPECT_TRUE(records::results(thermo).scalars.empty()) << "nothing was measured yet";
+  thermo.measure(Clock{}, scene.particles(), records::record(scene));
+  const auto results = records::results(thermo);
+  EXPECT_EQ(records::mean(results, "energy_per_particle"), 0.0);
+  EXPECT_NEAR(records::mean(results, "pressure"), 2.0 / 16.0, 1e-15);
+  EXPECT_TRUE(std::isnan(records::mean(results, "config_temperature")));
+}
+
+// Samples of the canonical distribution of one particle in the harmonic well of the walls: u has the
+// mean kT/2 and the configurational temperature is kT. n independent samples: standard errors
+// kT/sqrt(2 n) and kT sqrt(2/n); bounds 5 of them.
+TEST(Thermo, TemperatureOfAHarmonicWell) {
+  constexpr double kT = 0.7;
+  constexpr std::size_t n = 4000;
+  auto s = records::periodic<2>(6.0, {{{3.0, 3.0}}});
+  records::add_walls(s, 0.0);
+  s.walls[1].thickness = 2.5;  // the fluid space ends at 1 and 3.5
+  s.walls[0].thickness = 1.0;
+  s.pairs[0].a = 0.0;
+  s.pairs[0].kT = kT;
+  Scene<2> scene(s);
+  Thermo<2> thermo({.kind = "thermo", .name = "thermo"}, scene);
+  const auto x = support::random_numbers(n, 5);
+  for (const double value : x) {
+    // Half of a harmonic well: behind the lower surface by |x| sqrt(kT/k).
+    scene.particles().position.back()[1] = 1.0 - std::abs(value) * std::sqrt(kT / 1000.0);
+    thermo.measure(Clock{}, scene.particles(), records::record(scene));
+  }
+  const auto results = records::results(thermo);
+  EXPECT_NEAR(records::mean(results, "energy_per_particle"), 0.5 * kT, 5.0 * kT / std::sqrt(2.0 * n));
+  EXPECT_NEAR(records::mean(results, "config_temperature"), kT, 5.0 * kT * std::sqrt(2.0 / n));
+  EXPECT_NEAR(records::error(results, "config_temperature"), kT * std::sqrt(2.0 / n),
+              0.5 * kT * std::sqrt(2.0 / n));
+  support::MemoryArchive archive;
+  thermo.save(archive);
+  Thermo<2> copy({.kind = "thermo", .name = "thermo"}, scene);
+  copy.load(archive);
+  EXPECT_EQ(records::mean(records::results(copy), "pressure"), records::mean(results, "pressure"));
+}
+
+}  // namespace

@@ -1,0 +1,153 @@
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "io/file_size_limit.h"
+#include "io/temporary_directory.h"
+#include "odpd/core/error.h"
+#include "odpd/io/csv.h"
+#include "odpd/io/file.h"
+
+namespace odpd {
+namespace {
+
+using test::message_of;
+using test::TemporaryDirectory;
+
+TEST(Csv, NumbersSurviveBitForBit) {
+  const TemporaryDirectory directory;
+  using limits = std::numeric_limits<double>;
+  const std::vector<double> values{0.1,
+                                   -0.0,
+                                   1.0 / 3.0,
+                                   1e300,
+                                   limits::min(),
+                                   limits::max(),
+                                   limits::epsilon(),
+                                   123456789.0,
+                                   limits::denorm_min(),
+                                   limits::infinity(),
+                                   -limits::infinity()};
+  Table table{{"a note", "two\nlines"}, {"value", "index"}, {}};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    table.rows.push_back({values[i], static_cast<double>(i)});
+  }
+  write_csv(directory / "t.csv", table);
+  const TextTable read = read_csv(directory / "t.csv");
+  EXPECT_EQ(read.columns, table.columns);
+  ASSERT_EQ(read.rows.size(), values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(std::strtod(read.rows[i][0].c_str(), nullptr)),
+              std::bit_cast<std::uint64_t>(values[i]))
+        << read.rows[i][0];
+  }
+  EXPECT_EQ(read.line[0], 5);  // three comment lines and the header come first
+}
+
+TEST(Csv, NotANumberHasNoSign) {
+  const TemporaryDirectory directory;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  write_csv(directory / "t.csv", {{}, {"x", "y"}, {{nan, std::copysign(nan, -1.0)}}});
+  EXPECT_EQ(read_file(directory / "t.csv"), "x,y\nnan,nan\n");
+}
+
+TEST(Csv, ReadsWordsSpacesAndComments) {
+  const TemporaryDirectory directory;
+  write_file_atomically(directory / "t.csv",
+                        std::string("\xEF\xBB\xBF# made by hand\r\nx , name,y\r\n"
+                                    "\n 1.5,  water , 2\n# between\n-3,oil,4"));
+  const TextTable read = read_csv(directory / "t.csv");
+  EXPECT_EQ(read.columns, (std::vector<std::string>{"x", "name", "y"}));
+  ASSERT_EQ(read.rows.size(), 2u);
+  EXPECT_EQ(read.rows[0], (std::vector<std::string>{"1.5", "water", "2"}));
+  EXPECT_EQ(read.rows[1], (std::vector<std::string>{"-3", "oil", "4"}));
+  EXPECT_EQ(read.line, (std::vector<std::int64_t>{4, 6}));
+}
+
+TEST(Csv, ErrorsNameFileAndLine) {
+  const TemporaryDirectory directory;
+  const auto failure = [&](const std::string& text) {
+    write_file_atomically(directory / "t.csv", text);
+    return message_of<IoError>([&] { read_csv(directory / "t.csv"); });
+  };
+  EXPECT_NE(failure("x,y\n1,2\n1,2,3\n").find("t.csv:3: 3 values"), std::string::npos);
+  EXPECT_NE(failure("x,y\n1\n").find("t.csv:2: 1 values"), std::string::npos);
+  EXPECT_NE(failure("").find("t.csv: is empty"), std::string::npos);
+  EXPECT_NE(failure("# only this\n\n").find("t.csv: is empty"), std::string::npos);
+  EXPECT_NE(message_of<IoError>([&] { read_csv(directory / "absent.csv"); }).find("absent.csv"),
+            std::string::npos);
+  EXPECT_THROW(write_csv(directory / "t.csv", {{}, {"x", "y"}, {{1.0}}}), IoError);
+}
+
+TEST(Series, CountsBytesBeforeTheyAreWritten) {
+  const TemporaryDirectory directory;
+  SeriesFile series(directory / "s.csv", {"step", "energy"});
+  EXPECT_EQ(read_file(directory / "s.csv"), "step,energy\n");
+  series.append({1.0, 0.5});
+  EXPECT_EQ(series.bytes(), 18);
+  EXPECT_EQ(read_file(directory / "s.csv"), "step,energy\n");
+  series.flush(true);
+  EXPECT_EQ(series.bytes(), 18);
+  EXPECT_EQ(read_file(directory / "s.csv"), "step,energy\n1,0.5\n");
+  series.append({2.0, 0.25});
+  series.flush();
+  EXPECT_EQ(read_file(directory / "s.csv"), "step,energy\n1,0.5\n2,0.25\n");
+}
+
+TEST(Series, ResumeDropsWhatCameAfterTheCheckpoint) {
+  const TemporaryDirectory directory;
+  std::int64_t at_checkpoint = 0;
+  {
+    SeriesFile series(directory / "s.csv", {"step", "x"});
+    series.append({1.0, 0.1});
+    series.flush();
+    at_checkpoint = series.bytes();
+    series.append({2.0, 0.2});
+    series.append({3.0, 0.3});
+    series.flush();
+  }
+  const std::string uninterrupted = read_file(directory / "s.csv");
+  SeriesFile resumed(directory / "s.csv", at_checkpoint);
+  EXPECT_EQ(read_file(directory / "s.csv"), "step,x\n1,0.1\n");
+  resumed.append({2.0, 0.2});
+  resumed.append({3.0, 0.3});
+  resumed.flush();
+  EXPECT_EQ(read_file(directory / "s.csv"), uninterrupted);
+}
+
+TEST(Series, FullDiskLeavesWholeLinesAndCanBeRetried) {
+  const TemporaryDirectory directory;
+  SeriesFile series(directory / "s.csv", {"step", "x"});
+  series.append({0.0, 0.5});
+  series.flush();
+  std::string expected = "step,x\n0,0.5\n";
+  const std::string before = expected;
+  for (int k = 1; k < 2000; ++k) {
+    series.append({static_cast<double>(k), 0.5});
+    expected += std::to_string(k) + ",0.5\n";
+  }
+  const std::string message = message_of<IoError>([&] {
+    const test::FileSizeLimit limit(4096);
+    series.flush();
+  });
+  EXPECT_NE(message.find("s.csv: cannot be written: File too large"), std::string::npos) << message;
+  EXPECT_EQ(read_file(directory / "s.csv"), before);
+  series.flush();
+  EXPECT_EQ(read_file(directory / "s.csv"), expected);
+}
+
+TEST(Series, ResumeRefusesAFileThatIsTooShort) {
+  const TemporaryDirectory directory;
+  write_file_atomically(directory / "s.csv", std::string("step\n"));
+  const std::string message =
+      message_of<IoError>([&] { SeriesFile(directory / "s.csv", std::int64_t{6}); });
+  EXPECT_NE(message.find("s.csv: has 5 bytes"), std::string::npos) << message;
+  EXPECT_EQ(read_file(directory / "s.csv"), "step\n");
+  EXPECT_THROW(SeriesFile(directory / "absent.csv", std::int64_t{0}), IoError);
+}
+
+}  // namespace
+}  // namespace odpd

@@ -1,0 +1,161 @@
+// Files for other programs: ParaView and gnuplot.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "io/python.h"
+#include "io/sample_frame.h"
+#include "io/temporary_directory.h"
+#include "odpd/core/error.h"
+#include "odpd/io/file.h"
+#include "odpd/io/gnuplot.h"
+#include "odpd/io/vtk.h"
+
+namespace odpd {
+namespace {
+
+namespace fs = std::filesystem;
+using test::sample_frame;
+using test::TemporaryDirectory;
+
+bool gnuplot_is_installed() { return std::system("gnuplot --version > /dev/null 2>&1") == 0; }
+
+/// An environment variable with another value for a while.
+class Variable {
+ public:
+  Variable(const char* name, const char* value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    ::setenv(name, value, 1);
+  }
+  ~Variable() { ::setenv(name_, before_.c_str(), 1); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+  std::string before_;
+};
+
+class VtpIn : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Dimensions, VtpIn, testing::Values(2, 3));
+
+TEST_P(VtpIn, HoldsEveryParticleOnce) {
+  if (!test::python_has("xml.etree.ElementTree")) GTEST_SKIP() << "no python with xml";
+  const TemporaryDirectory directory;
+  write_vtp(directory / "frame.vtp", sample_frame(GetParam(), 7, 20));
+  EXPECT_EQ(test::run_python(directory.path(), R"(
+import sys, xml.etree.ElementTree as tree
+root = tree.parse(sys.argv[1]).getroot()
+assert root.tag == 'VTKFile' and root.get('type') == 'PolyData'
+piece = root.find('PolyData/Piece')
+assert piece.get('NumberOfPoints') == '7' and piece.get('NumberOfVerts') == '7'
+numbers = lambda e: [float(w) for w in e.text.split()]
+points = numbers(piece.find('Points/DataArray'))
+assert len(points) == 21
+assert piece.find('Points/DataArray').get('NumberOfComponents') == '3'
+data = {e.get('Name'): numbers(e) for e in piece.findall('PointData/DataArray')}
+assert len(data['velocity']) == 21 and data['velocity'][3:5] == [0.5, 0.4]
+assert data['id'] == [10, 13, 16, 19, 22, 25, 28]
+assert data['species'] == [0, 1, 0, 1, 0, 1, 0] and data['group'] == [0, 1, 2, 0, 1, 2, 0]
+verts = {e.get('Name'): numbers(e) for e in piece.findall('Verts/DataArray')}
+assert verts['connectivity'] == list(range(7)) and verts['offsets'] == list(range(1, 8))
+assert numbers(root.find('PolyData/FieldData/DataArray')) == [0.1]
+)",
+                             directory / "frame.vtp"),
+            0);
+  if (GetParam() == 2) {
+    EXPECT_NE(read_file(directory / "frame.vtp").find(" 0\n"), std::string::npos);
+  }
+}
+
+TEST(Pvd, ListsTimesAndEscapedNames) {
+  const TemporaryDirectory directory;
+  write_pvd(directory / "all.pvd", {{0.5, "a<b>&\"c\".vtp"}, {1.0 / 3.0, "2.vtp"}});
+  const std::string text = read_file(directory / "all.pvd");
+  EXPECT_NE(text.find("timestep=\"0.5\" part=\"0\" file=\"a&lt;b&gt;&amp;&quot;c&quot;.vtp\""),
+            std::string::npos);
+  EXPECT_NE(text.find("timestep=\"0.3333333333333333\""), std::string::npos);
+}
+
+Chart sample_chart() {
+  Chart chart{"It's a `title` of $HOME_\xCE\xB7", "y", "v_x", false, false, {}};
+  chart.curves.push_back({"measured", {1, 2, 3}, {1, 4, 9}, {0.1, 0.2, 0.3}, false, true});
+  chart.curves.push_back({"theory", {1, 3}, {1, 9}, {}, true, false});
+  return chart;
+}
+
+void expect_pictures(const fs::path& stem) {
+  const std::string png = read_file(stem.string() + ".png");
+  EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_NE(png.find("IEND"), std::string::npos);
+  EXPECT_NE(read_file(stem.string() + ".svg").find("</svg>"), std::string::npos);
+}
+
+TEST(Gnuplot, DrawsCharts) {
+  if (!gnuplot_is_installed()) GTEST_SKIP() << "gnuplot is not installed";
+  const TemporaryDirectory directory;
+  ASSERT_TRUE(draw_chart(directory / "it's a chart", sample_chart()));
+  expect_pictures(directory / "it's a chart");
+  const std::string svg = read_file(directory / "it's a chart.svg");
+  EXPECT_NE(svg.find("It's a `title` of $HOME_\xCE\xB7"), std::string::npos)
+      << "the title must appear as it was given";
+  EXPECT_NE(svg.find("measured"), std::string::npos);
+}
+
+TEST(Gnuplot, DrawsWhateverTheDataAre) {
+  if (!gnuplot_is_installed()) GTEST_SKIP() << "gnuplot is not installed";
+  const TemporaryDirectory directory;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<Curve> curves{{"nothing", {}, {}, {}},
+                                  {"nan", {1, 2}, {nan, infinity}, {}},
+                                  {"one", {1}, {2}, {}},
+                                  {"flat", {1, 2}, {0, 0}, {}},
+                                  {"signs", {-1, 1, 2}, {-1, 1, 3}, {9, 9, nan}},
+                                  {"band", {1, 2}, {2, 3}, {5, 1}, true, false},
+                                  {"wide", {1e-9, 1e9}, {1e-200, 1e200}, {}},
+                                  {"close", {1.0001, 1.0002}, {5.0001, 5.0002}, {}, true, true}};
+  for (const Curve& curve : curves) {
+    for (const bool log : {false, true}) {
+      const Chart chart{"title", "x", "y", log, log, {curve}};
+      EXPECT_TRUE(draw_chart(directory / "chart", chart)) << curve.title << " " << log;
+      expect_pictures(directory / "chart");
+    }
+  }
+  EXPECT_TRUE(draw_chart(directory / "chart", {}));
+  Chart uneven = sample_chart();
+  uneven.curves[0].y.pop_back();
+  EXPECT_THROW(draw_chart(directory / "chart", uneven), IoError);
+}
+
+TEST(Gnuplot, DrawsParticles) {
+  if (!gnuplot_is_installed()) GTEST_SKIP() << "gnuplot is not installed";
+  const TemporaryDirectory directory;
+  for (const int dimension : {2, 3}) {
+    ASSERT_TRUE(draw_particles(directory / "frame", sample_frame(dimension, 9, 1), 1));
+    expect_pictures(directory / "frame");
+  }
+  Frame bare;
+  EXPECT_TRUE(draw_particles(directory / "frame", bare, 0));
+  EXPECT_THROW(draw_particles(directory / "frame", sample_frame(2, 9, 1), 2), IoError);
+}
+
+TEST(Gnuplot, SaysWhenThePicturesCannotBeWritten) {
+  if (!gnuplot_is_installed()) GTEST_SKIP() << "gnuplot is not installed";
+  const TemporaryDirectory directory;
+  EXPECT_THROW(draw_chart(directory / "absent" / "chart", sample_chart()), IoError);
+  fs::create_directories(directory / "chart.png" / "inside");
+  EXPECT_THROW(draw_chart(directory / "chart", sample_chart()), IoError);
+}
+
+TEST(Gnuplot, MissingProgramKeepsTheScript) {
+  const TemporaryDirectory directory;
+  const Variable path("PATH", directory.path().c_str());
+  EXPECT_FALSE(draw_chart(directory / "chart", sample_chart()));
+  EXPECT_TRUE(fs::exists(directory / "chart.gp"));
+  EXPECT_FALSE(fs::exists(directory / "chart.png"));
+}
+
+}  // namespace
+}  // namespace odpd

@@ -1,0 +1,117 @@
+#include <gtest/gtest.h>
+
+#include "odpd/core/parallel.h"
+#include "odpd/operator/edge_sums.h"
+#include "support/dimensions.h"
+#include "support/network.h"
+
+namespace {
+
+using odpd::DpdModel;
+using odpd::DpdParameters;
+using odpd::Vec;
+using support::Fluid;
+
+DpdParameters transverse() {
+  DpdParameters p;
+  p.gamma_perp = 1.5;
+  return p;
+}
+
+template <int D>
+double energy(Fluid<D>& fluid, const DpdModel<D>& model) {
+  fluid.connect(model);
+  double u = 0.0;
+  for (const double edge : fluid.network.u) u += edge;
+  return u;
+}
+
+template <class T>
+class EdgeSumsTest : public ::testing::Test {};
+TYPED_TEST_SUITE(EdgeSumsTest, support::Dimensions);
+
+TYPED_TEST(EdgeSumsTest, AddTheForcesOfBothEnds) {
+  constexpr int D = TypeParam::D;
+  Fluid<D> fluid(3.0, true, 90, 3, 0.7);
+  fluid.connect(DpdModel<D>(1, {transverse()}));
+  const auto& n = fluid.network;
+  const auto edges = static_cast<std::size_t>(n.size());
+  const auto on_edge = support::random_vectors<D>(edges, 1);
+  const auto velocity = support::random_vectors<D>(90, 2);
+  const auto before = support::random_vectors<D>(90, 3);
+  std::vector<Vec<D>> expected = before;
+  std::vector<Vec<D>> conservative(90), friction(90);
+  for (std::size_t k = 0; k < edges; ++k) {
+    const auto i = static_cast<std::size_t>(n.i[k]), j = static_cast<std::size_t>(n.j[k]);
+    expected[i] += on_edge[k];
+    expected[j] -= on_edge[k];
+    conservative[i] += n.f_c[k] * n.e[k];
+    conservative[j] -= n.f_c[k] * n.e[k];
+    const Vec<D> slip = velocity[i] - velocity[j];
+    const Vec<D> along = dot(slip, n.e[k]) * n.e[k];
+    const Vec<D> drag = n.zeta_par[k] * along + n.zeta_perp[k] * (slip - along);
+    friction[i] -= drag;
+    friction[j] += drag;
+  }
+  std::vector<Vec<D>> sum = before, c(90), f(90);
+  odpd::add_edge_forces<D>(n, on_edge, sum);
+  odpd::add_conservative_forces(n, c);
+  odpd::add_friction_forces<D>(n, velocity, f);
+  for (std::size_t i = 0; i < 90; ++i) {
+    EXPECT_NEAR(norm(sum[i] - expected[i]), 0.0, 1e-12);
+    EXPECT_NEAR(norm(c[i] - conservative[i]), 0.0, 1e-11);
+    EXPECT_NEAR(norm(f[i] - friction[i]), 0.0, 1e-12);
+  }
+}
+
+// Force and Laplacian of one particle from central differences of the total energy. s_bar = 3 keeps
+// the third derivatives bounded across the cutoff; both differences then err by less than 1e-4.
+TYPED_TEST(EdgeSumsTest, ForceAndLaplacianAreDerivativesOfTheEnergy) {
+  constexpr int D = TypeParam::D;
+  DpdParameters p;
+  p.s_bar = 3.0;
+  const DpdModel<D> model(1, {p});
+  Fluid<D> fluid(2.6, true, D == 2 ? 25 : 60, 3);
+  const double u = energy(fluid, model);
+  std::vector<Vec<D>> force(fluid.particles.position.size());
+  std::vector<double> laplacian(force.size(), 0.0);
+  odpd::add_conservative_forces(fluid.network, force);
+  odpd::add_laplacian(fluid.network, laplacian);
+  constexpr double h = 1e-4;
+  for (const std::size_t i : {0u, 7u, 19u}) {
+    const Vec<D> r = fluid.particles.position[i];
+    double curvature = 0.0;
+    for (int c = 0; c < D; ++c) {
+      std::array<double, 2> side{};
+      for (const std::size_t s : {0u, 1u}) {
+        fluid.particles.position[i] = r;
+        fluid.particles.position[i][c] += s == 0 ? -h : h;
+        fluid.box.wrap(fluid.particles.position[i]);
+        side[s] = energy(fluid, model);
+      }
+      fluid.particles.position[i] = r;
+      EXPECT_NEAR(force[i][c], -(side[1] - side[0]) / (2.0 * h), 1e-4);
+      curvature += (side[1] - 2.0 * u + side[0]) / (h * h);
+    }
+    EXPECT_NEAR(laplacian[i], curvature, 1e-4 * (1.0 + std::abs(curvature)));
+  }
+}
+
+TYPED_TEST(EdgeSumsTest, HaveTheSameBitsOnAnyThreadCount) {
+  constexpr int D = TypeParam::D;
+  Fluid<D> fluid(D == 2 ? 15.0 : 7.0, true, 1200, 2);
+  fluid.connect(DpdModel<D>(1, {transverse()}));
+  const auto velocity = support::random_vectors<D>(1200, 2);
+  std::vector<Vec<D>> first;
+  for (const int threads : {1, 2, 3}) {
+    odpd::set_threads(threads, 0);
+    std::vector<Vec<D>> force(1200);
+    odpd::add_conservative_forces(fluid.network, force);
+    odpd::add_friction_forces<D>(fluid.network, velocity, force);
+    odpd::set_threads(1, 0);
+    if (threads == 1) first = force;
+    EXPECT_EQ(force, first);
+  }
+}
+
+}  // namespace

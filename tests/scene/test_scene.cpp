@@ -1,0 +1,139 @@
+#include "odpd/scene/scene.h"
+
+#include <gtest/gtest.h>
+
+#include "cases.h"
+#include "support/dimensions.h"
+#include "support/points.h"
+
+namespace {
+
+using odpd::Scene;
+using odpd::SceneSettings;
+using odpd::StartKind;
+using odpd::Vec;
+
+// Walls at both ends of x and the last direction; two free particles anywhere.
+template <int D>
+SceneSettings<D> duct() {
+  SceneSettings<D> s;
+  s.box.size = support::uniform_vec<D>(6.0);
+  s.box.periodic.fill(true);
+  for (const int axis : {0, D - 1}) {
+    s.box.periodic[static_cast<std::size_t>(axis)] = false;
+    for (const bool high : {false, true}) {
+      odpd::WallSettings<D> wall;
+      wall.axis = axis;
+      wall.high = high;
+      wall.thickness = 1.0 + 0.1 * axis;
+      wall.stiffness = high ? 700.0 : 300.0;
+      wall.layers = {{.depth = 0.0, .count = 0, .spacing = 1.0}};
+      s.walls.push_back(wall);
+    }
+  }
+  s.body_force[0] = 0.25;
+  s.start = StartKind::file;
+  s.start_positions.assign(2, support::uniform_vec<D>(3.0));
+  s.start_positions[1][0] = 4.0;
+  s.relax_sweeps = 0;
+  return s;
+}
+
+template <class T>
+class SceneTest : public ::testing::Test {};
+TYPED_TEST_SUITE(SceneTest, support::Dimensions);
+
+// The potential is quadratic, so central differences are exact up to rounding away from the surface.
+TYPED_TEST(SceneTest, WallForceIsMinusTheGradientOfTheEnergy) {
+  constexpr int D = TypeParam::D;
+  const Scene<D> scene(duct<D>());
+  const auto& particles = scene.particles();
+  const auto free = static_cast<std::size_t>(particles.size()) - 2;
+  const auto trials = support::random_points<D>(support::uniform_vec<D>(-0.5),
+                                                support::uniform_vec<D>(6.5), 60, 3);
+  std::vector<double> ignored(particles.position.size());
+  const auto energy = [&](const std::vector<Vec<D>>& r) {
+    return scene.potential_energy(particles, r, ignored);
+  };
+  constexpr double h = 1e-4;
+  int pushed = 0;
+  for (const Vec<D>& trial : trials) {
+    std::vector<Vec<D>> r = particles.position;
+    r[free] = trial;
+    std::vector<Vec<D>> force(r.size());
+    std::vector<double> laplacian(r.size(), 0.0);
+    scene.add_potential_forces(particles, r, force);
+    const double u = scene.potential_energy(particles, r, laplacian);
+    double curvature = 0.0;
+    for (int c = 0; c < D; ++c) {
+      std::vector<Vec<D>> low = r, high = r;
+      low[free][c] -= h;
+      high[free][c] += h;
+      EXPECT_NEAR(force[free][c], -(energy(high) - energy(low)) / (2.0 * h), 1e-6);
+      curvature += (energy(high) - 2.0 * u + energy(low)) / (h * h);
+    }
+    EXPECT_NEAR(laplacian[free], curvature, 1e-3);
+    pushed += norm(force[free]) > 0.0 ? 1 : 0;
+    EXPECT_EQ(norm(force[free + 1]), 0.0) << "nothing acts inside the fluid";
+    for (std::size_t i = 0; i < free; ++i) EXPECT_EQ(norm(force[i]), 0.0) << "known particles";
+  }
+  EXPECT_GT(pushed, 10);
+}
+
+TYPED_TEST(SceneTest, WallForcesAddUpInACorner) {
+  constexpr int D = TypeParam::D;
+  const Scene<D> scene(duct<D>());
+  std::vector<Vec<D>> r = scene.particles().position;
+  r.back()[0] = 0.8;        // 0.2 behind x-
+  r.back()[D - 1] = 5.0;    // 0.1 (D - 1) behind the upper wall
+  std::vector<Vec<D>> force(r.size());
+  scene.add_potential_forces(scene.particles(), r, force);
+  EXPECT_NEAR(force.back()[0], 300.0 * 0.2, 1e-10);
+  EXPECT_NEAR(force.back()[D - 1], -700.0 * 0.1 * (D - 1), 1e-10);
+}
+
+TYPED_TEST(SceneTest, TheBodyForceActsOnTheFluidOnly) {
+  constexpr int D = TypeParam::D;
+  const Scene<D> scene(duct<D>());
+  std::vector<Vec<D>> force(scene.particles().position.size());
+  scene.add_driving_forces(scene.particles(), 0.0, force);
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    EXPECT_EQ(force[i][0], scene.particles().is_free(i) ? 0.25 : 0.0);
+    EXPECT_EQ(force[i][1], 0.0);
+  }
+}
+
+TYPED_TEST(SceneTest, TheMirrorBringsParticlesBack) {
+  constexpr int D = TypeParam::D;
+  const Scene<D> scene(duct<D>());
+  const auto confined = [&](double x, bool expected) {
+    Vec<D> r = support::uniform_vec<D>(3.0);
+    r[0] = x;
+    EXPECT_EQ(scene.confine(r), expected) << "at " << x;
+    EXPECT_EQ(r[D - 1], 3.0);
+    return r[0];
+  };
+  EXPECT_EQ(confined(0.0, false), 0.0);
+  EXPECT_EQ(confined(6.0, false), 6.0);
+  EXPECT_EQ(confined(2.2, false), 2.2);
+  EXPECT_DOUBLE_EQ(confined(-0.25, true), 0.25);
+  EXPECT_DOUBLE_EQ(confined(6.5, true), 5.5);
+  for (const double far : {-100.0, 100.0}) {
+    const double x = confined(far, true);
+    EXPECT_TRUE(x >= 0.0 && x <= 6.0) << "inside however far it was";
+  }
+  Vec<D> outside = support::uniform_vec<D>(-1.0);
+  EXPECT_TRUE(scene.confine(outside));
+  for (int c = 0; c < D; ++c) EXPECT_EQ(outside[c], scene.box().is_periodic(c) ? -1.0 : 1.0);
+}
+
+TEST(Scene, LargestTemperatureOfAnyPair) {
+  SceneSettings<2> s = cases::settings<2>(cases::channel);
+  s.species.resize(2);
+  s.species[0].fraction = s.species[1].fraction = 0.5;
+  s.pairs.assign(4, s.pairs[0]);
+  s.pairs[3].kT = 2.5;
+  EXPECT_EQ(Scene<2>(s).largest_kT(), 2.5);
+}
+
+}  // namespace

@@ -1,0 +1,181 @@
+#include <gtest/gtest.h>
+
+#include "cases.h"
+#include "support/errors.h"
+
+namespace {
+
+using cases::channel;
+using cases::periodic;
+using cases::settings;
+using odpd::ConfigError;
+using odpd::StartKind;
+using support::expect_error;
+using Overrides = std::vector<std::string>;
+
+void refuse(const std::string& text, const Overrides& overrides,
+            std::initializer_list<const char*> parts) {
+  expect_error<ConfigError>([&] { settings<2>(text, overrides); }, parts);
+}
+
+TEST(SceneSettings, ReadsAChannel) {
+  const auto scene = settings<2>(channel);
+  EXPECT_EQ(scene.seed, 3u);
+  EXPECT_EQ(scene.box.size, (odpd::Vec<2>{{10.0, 12.0}}));
+  EXPECT_TRUE(scene.box.is_periodic(0));
+  EXPECT_FALSE(scene.box.is_periodic(1));
+  EXPECT_EQ(scene.density, 4.0);
+  EXPECT_EQ(scene.count, 0);
+  EXPECT_EQ(scene.start, StartKind::random);
+  EXPECT_EQ(scene.relax_sweeps, 100);
+  ASSERT_EQ(scene.pairs.size(), 1u);
+  EXPECT_EQ(scene.pairs[0].a, 18.75);
+  EXPECT_EQ(scene.pairs[0].gamma, 4.5);
+  EXPECT_EQ(scene.pairs[0].s, 0.5);
+  ASSERT_EQ(scene.walls.size(), 2u);
+  EXPECT_EQ(scene.wall_at(1, false), 0);
+  EXPECT_EQ(scene.wall_at(1, true), 1);
+  EXPECT_EQ(scene.wall_at(0, true), -1);
+  EXPECT_EQ(scene.walls[1].velocity[0], 1.0);
+  EXPECT_EQ(scene.walls[1].layers[1].count, 20);
+  EXPECT_EQ(scene.walls[1].layers[1].depth, 0.5);
+}
+
+TEST(SceneSettings, SigmaSetsTheFriction) {
+  const auto scene = settings<2>(R"(
+[box]
+size = [5.0, 5.0]
+periodic = [true, true]
+[fluid]
+count = 77
+a = 25.0
+sigma = 3.0
+kT = 0.5
+[fluid.rattler_friction]
+gamma = 0.1
+cutoff = 2.0
+[start]
+from = "lattice"
+)");
+  EXPECT_DOUBLE_EQ(scene.pairs[0].gamma, 9.0);  // sigma^2 / (2 kT)
+  EXPECT_EQ(scene.pairs[0].gamma_far, 0.1);
+  EXPECT_EQ(scene.pairs[0].cutoff_far, 2.0);
+  EXPECT_EQ(scene.count, 77);
+  EXPECT_EQ(scene.start, StartKind::lattice);
+  EXPECT_EQ(scene.relax_sweeps, 0);
+}
+
+TEST(SceneSettings, PairsOfSpeciesInheritFromTheFluid) {
+  const auto scene = settings<3>(std::string(periodic) + R"(
+[[species]]
+name = "water"
+fraction = 0.75
+[[species]]
+name = "oil"
+fraction = 0.25
+[[pair]]
+species = ["water", "oil"]
+a = 60.0
+)");
+  ASSERT_EQ(scene.pairs.size(), 4u);
+  EXPECT_EQ(scene.pairs[0].a, 18.75);
+  EXPECT_EQ(scene.pairs[1].a, 60.0);
+  EXPECT_EQ(scene.pairs[2].a, 60.0);
+  EXPECT_EQ(scene.pairs[1].gamma, 4.5);
+  EXPECT_EQ(scene.pairs[3].a, 18.75);
+}
+
+TEST(SceneSettings, RefusesBadFluids) {
+  refuse(channel, {"fluid.sigma=3.0"}, {"sigma", "never both"});
+  refuse(channel, {"fluid.density=-4.0"}, {"fluid.density"});
+  refuse(channel, {"fluid.density=0.0"}, {"fluid.density"});
+  refuse(channel, {"fluid.count=100"}, {"fluid.count", "density or count"});
+  refuse(channel, {"fluid.mass=1.0"}, {"fluid.mass", "massless", "mass = 0.0"});
+  refuse(channel, {"fluid.gamma=0.0"}, {"fluid.gamma"});
+  refuse(channel, {"fluid.kT=-1.0"}, {"fluid.kT"});
+  refuse(channel, {"fluid.a=-1.0"}, {"fluid.a"});
+  refuse(channel, {"fluid.cutoff=0.0"}, {"fluid.cutoff"});
+  refuse(channel, {"fluid.model=spheres"}, {"fluid.model", "dpd"});
+  refuse(channel, {"fluid.rattler_friction.gamma=0.1", "fluid.rattler_friction.cutoff=1.0"},
+         {"cutoff", "larger than fluid.cutoff"});
+  refuse(channel, {"seed=-1"}, {"seed"});
+  refuse(channel, {"start.from=grid"}, {"start.from", "lattice"});
+  refuse(channel, {"start.relax_sweeps=-1"}, {"relax_sweeps"});
+  refuse("[box]\nsize = [9.0, 9.0]\nperiodic = [true, true]\n"
+         "[fluid]\ndensity = 4.0\na = 1.0\nkT = 0.0\nsigma = 3.0\n",
+         {}, {"case.toml:", "sigma", "gamma"});
+}
+
+TEST(SceneSettings, RefusesBadBoxes) {
+  refuse(channel, {"box.size=[10.0]"}, {"box.size", "2 components"});
+  refuse(channel, {"box.size=[10.0, -12.0]"}, {"box.size", "positive"});
+  refuse(channel, {"box.periodic=[true]"}, {"box.periodic", "2 flags"});
+  refuse(channel, {"box.periodic=[false, false]"}, {"direction x is bounded", "x-"});
+}
+
+TEST(SceneSettings, RefusesBadWalls) {
+  refuse(channel, {"box.periodic=[true, true]"}, {"wall", "direction y is periodic"});
+  refuse(channel, {"wall.1.side=y-"}, {"two walls at y-"});
+  refuse(channel, {"wall.0.side=top"}, {"side", "y+"});
+  refuse(channel, {"wall.0.layers.1.depth=1.01"}, {"depth", "outside the box", "thickness = 1"});
+  refuse(channel, {"wall.0.layers.1.depth=-0.1"}, {"depth"});
+  refuse(channel, {"wall.0.layers.0.count=0"}, {"count", "positive"});
+  refuse(channel, {"wall.0.layers.0.spacing=0.2"}, {"count or spacing"});
+  refuse(channel, {"wall.1.velocity=[1.0, 0.5]"}, {"velocity", "component y must be 0"});
+  refuse(channel, {"wall.0.thickness=6.0"}, {"thickness", "half of the box"});
+  refuse(channel, {"wall.0.species=oil"}, {"species", "'oil'", "fluid"});
+  refuse(channel, {"wall.0.stiffness=0.0"}, {"stiffness"});
+  refuse(channel, {"wall.0.layers=[]"}, {"layers", "at least one layer"});
+  const std::string text = channel;
+  const std::size_t second = text.rfind("[[wall]]");
+  refuse(text.substr(0, second), {}, {"box.periodic", "direction y is bounded", "upper", "y+"});
+  refuse(text.substr(0, second) + "[[wall]]\nside = \"y+\"\n", {}, {"layers", "depth = 0.0"});
+}
+
+TEST(SceneSettings, ALayerOfA3DWallHasASpacing) {
+  const char* text = R"(
+[[wall]]
+side = "z-"
+layers = [{ depth = 0.0, count = 50 }]
+[[wall]]
+side = "z+"
+layers = [{ depth = 0.0, spacing = 0.5 }]
+)";
+  const Overrides bounded{"box.periodic=[true, true, false]"};
+  expect_error<ConfigError>([&] { settings<3>(std::string(periodic) + text, bounded); },
+                            {"count", "spacing"});
+}
+
+TEST(SceneSettings, RefusesAForceThatNothingBalances) {
+  expect_error<ConfigError>([] { settings<3>(periodic, {"body_force.force=[0.1, 0.0, 0.0]"}); },
+                            {"body_force.force", "net force"});
+  EXPECT_NO_THROW(settings<3>(periodic, {"body_force.force=[0.0, 0.0, 0.0]"}));
+  EXPECT_EQ(settings<2>(channel, {"body_force.force=[0.1, 0.0]"}).body_force[0], 0.1);
+}
+
+TEST(SceneSettings, RefusesBadSpecies) {
+  const auto with = [](const std::string& species) {
+    expect_error<ConfigError>([&] { settings<3>(periodic + species); }, {"species"});
+  };
+  const std::string a = "[[species]]\nname = \"a\"\n", b = "[[species]]\nname = \"b\"\n";
+  with(a + "fraction = 0.5\n" + b + "fraction = 0.6\n");
+  with(a + "fraction = 0.5\n" + a + "fraction = 0.5\n");
+  with(a + "fraction = 0.5\ncount = 3\n" + b + "fraction = 0.5\n");
+  with(a + "count = -3\n" + b);
+  with(a + "fraction = -0.5\n" + b + "fraction = 1.5\n");
+  with(a + "[[pair]]\nspecies = [\"a\", \"c\"]\na = 3.0\n");
+  with(a + "[[pair]]\nspecies = [\"a\"]\na = 3.0\n");
+  EXPECT_NO_THROW(settings<3>(periodic + a + "fraction = 0.5\n" + b + "fraction = 0.5\n"));
+  EXPECT_NO_THROW(settings<3>(periodic + a + "count = 3\n" + b));
+}
+
+TEST(SceneSettings, ReadsEveryKeyItKnowsAndNoOther) {
+  const odpd::Config good = odpd::Config::from_text(channel, "case.toml");
+  odpd::read_scene_settings<2>(good);
+  EXPECT_NO_THROW(good.reject_unread());
+  const odpd::Config typo = odpd::Config::from_text(channel, "case.toml", {"fluid.gama_perp=1.0"});
+  odpd::read_scene_settings<2>(typo);
+  expect_error<ConfigError>([&] { typo.reject_unread(); }, {"gama_perp", "gamma_perp"});
+}
+
+}  // namespace
