@@ -9,6 +9,7 @@
 #include "odpd/analysis/profile.h"
 #include "odpd/analysis/rdf.h"
 #include "odpd/analysis/thermo.h"
+#include "odpd/analysis/wall_force.h"
 
 namespace odpd {
 
@@ -120,6 +121,10 @@ std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::strin
   if (kind == "profile") return make_profile(entry, std::move(settings), scene);
   if (kind == "density-residual") return make_residual(entry, std::move(settings), scene);
   if (kind == "rdf") return make_rdf(entry, std::move(settings), scene);
+  if (kind == "wall-force") {
+    if (scene.settings().walls.empty()) entry.fail("kind", "the scene has no [[wall]] to feel a force");
+    return std::make_unique<WallForce<D>>(std::move(settings), scene);
+  }
   return make_msd(entry, std::move(settings), scene, clock);
 }
 
@@ -128,7 +133,7 @@ std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::strin
 template <int D>
 std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config, const Scene<D>& scene,
                                                          const Clock& clock) {
-  const std::vector<std::string> kinds{"thermo", "profile", "density-residual", "rdf", "msd"};
+  const std::vector<std::string> kinds{"thermo", "profile", "density-residual", "rdf", "msd", "wall-force"};
   std::vector<std::unique_ptr<Observer<D>>> observers;
   const auto have = [&](const std::string& kind) {
     return std::any_of(observers.begin(), observers.end(), [&](const auto& o) { return o->settings().kind == kind; });

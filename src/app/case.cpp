@@ -189,13 +189,25 @@ void read_start_file(SceneSettings<D>& scene) {
     throw ConfigError(fmt::format("{}: there are no fluid particles in it", scene.start_file));
 }
 
+std::string portable_case(const Config& config) {
+  const Config start = config.table("start");
+  if (!start.has("file")) return config.resolved();
+  const std::filesystem::path file = config.directory() / start.text("file");
+  std::string quoted;
+  for (const char letter : std::filesystem::absolute(file).lexically_normal().string()) {
+    if (letter == '"' || letter == '\\') quoted += '\\';
+    quoted += letter;
+  }
+  return Config::from_text(config.resolved(), "case.toml", {fmt::format("start.file=\"{}\"", quoted)}).resolved();
+}
+
 std::vector<std::pair<std::string, std::string>> fixed_values(const Config& config) {
   std::vector<std::pair<std::string, std::string>> values;
   for (const auto& value : config.flattened()) {
     const std::string& path = value.first;
     const auto in = [&](std::string_view table) { return path.rfind(table, 0) == 0; };
-    if (path == "title" || path == "run.duration" || in("solver.") || in("output.") || in("check.") || path == "check")
-      continue;
+    if (path == "title" || path == "run.duration" || path == "start.file" || path == "check") continue;
+    if (in("solver.") || in("output.") || in("check.")) continue;
     values.push_back(value);
   }
   std::sort(values.begin(), values.end());

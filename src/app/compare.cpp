@@ -81,12 +81,13 @@ double relative_difference(const std::vector<double>& a, const std::vector<doubl
 }
 
 template <int D>
-Row measure(const FrozenProblem<D>& problem, SolverOptions options, double tolerance) {
+Row measure(const FrozenProblem<D>& problem, SolverOptions options, double tolerance, bool increment_rule) {
   const bool scheme_2 = options.name == "picard-deflated";
   const System& system = scheme_2 ? problem.held : problem.as_posed;
   const std::vector<double>& exact = scheme_2 ? problem.exact_held : problem.exact_as_posed;
   options.tolerance = tolerance;
-  if (options.name != "picard" && !scheme_2) options.stopping = Stopping::residual;
+  const bool picard = options.name == "picard" || scheme_2;
+  options.stopping = picard && increment_rule ? Stopping::increment : Stopping::residual;
   if (options.name != "petsc") options.petsc_options.clear();
   Row row;
   row.solver = options.name;
@@ -110,12 +111,12 @@ Row measure(const FrozenProblem<D>& problem, SolverOptions options, double toler
 }
 
 std::string table_text(const std::vector<Row>& rows) {
-  std::string out = fmt::format("{:<16} {:>9} {:>10} {:>12} {:>12} {:>11} {:>11} {:>10}  {}\n", "solver", "tolerance",
+  std::string out = fmt::format("{:<16} {:>9} {:>10} {:>12} {:>12} {:>11} {:>11} {:>12}  {}\n", "solver", "tolerance",
                                 "iterations", "residual", "error in v", "set-up (s)", "solve (s)", "memory", "problem");
   for (const Row& r : rows)
-    out += fmt::format("{:<16} {:>9.0e} {:>10} {:>12.3e} {:>12.3e} {:>11.3e} {:>11.3e} {:>6.1f} MiB  {}\n", r.solver,
+    out += fmt::format("{:<16} {:>9.0e} {:>10} {:>12.3e} {:>12.3e} {:>11.3e} {:>11.3e} {:>8.0f} KiB  {}\n", r.solver,
                        r.tolerance, r.report.iterations, r.report.residual, r.velocity_error, r.setup_seconds,
-                       r.solve_seconds, static_cast<double>(r.report.memory_bytes) / 1048576.0,
+                       r.solve_seconds, static_cast<double>(r.report.memory_bytes) / 1024.0,
                        r.report.converged ? r.report.problem : "NOT CONVERGED: " + r.report.failure);
   return out;
 }
@@ -160,7 +161,7 @@ int compare_in(const CompareOptions& options, const Config& config, const CaseSe
   const std::filesystem::path directory =
       options.out.empty() ? std::filesystem::path("runs") / (settings.name + "-compare") : options.out;
   prepare_run_directory(directory);
-  write_file_atomically(directory / "case.toml", config.resolved());
+  write_file_atomically(directory / "case.toml", portable_case(config));
 
   const FrozenProblem<D> problem = freeze(simulation, options.steps);
   fmt::print("{}: {} unknowns in {}D after {} steps; seconds on {} thread(s), fastest of three\n\n", settings.title,
@@ -170,7 +171,7 @@ int compare_in(const CompareOptions& options, const Config& config, const CaseSe
     for (const double tolerance : tolerances) {
       SolverOptions solver = settings.solver;
       solver.name = name;
-      rows.push_back(measure(problem, solver, tolerance));
+      rows.push_back(measure(problem, solver, tolerance, options.increment_rule));
       const double digits = -std::log10(tolerance);
       if (!options.tolerances.empty() || std::abs(digits - 3) < 0.1 || std::abs(digits - 5) < 0.1 ||
           std::abs(digits - 7) < 0.1 || std::abs(digits - 10) < 0.1)

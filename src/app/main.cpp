@@ -1,8 +1,11 @@
 // The program: reads the command line, calls one command of the library, turns errors into one message and an exit code.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "odpd/app/compare.h"
 #include "odpd/app/info.h"
@@ -29,6 +32,15 @@ void add_case(CLI::App& command, std::filesystem::path& path, std::vector<std::s
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
+// What is wrong with the command line, in one line.
+std::string usage_error(const CLI::App& app, const std::string& reason) {
+  if (!app.get_subcommands().empty()) return reason + "; see odpd " + app.get_subcommands().front()->get_name() + " --help";
+  const std::vector<std::string> words = app.remaining();
+  const auto word = std::find_if(words.begin(), words.end(), [](const auto& w) { return w.rfind('-', 0) != 0; });
+  if (word == words.end()) return "a command is needed: run, compare, info; see odpd --help";
+  return "there is no command '" + *word + "', only run, compare, info; see odpd --help";
+}
+
 int command_line(int argc, char** argv) {
   CLI::App app{"odpd: creeping flow of dissipative-particle fluids"};
   app.set_version_flag("--version", "odpd " ODPD_VERSION);
@@ -43,7 +55,7 @@ int command_line(int argc, char** argv) {
   run_command->add_option("--out", run.out,
                           "output directory [runs/<case>]; an earlier run there is moved aside to <dir>.N");
   run_command->add_option("--threads", run.threads, "threads; 0 chooses by the number of particles; never changes results")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0, 4096))
       ->capture_default_str();
   run_command->add_option("--restart", run.restart,
                           "checkpoint.h5 to continue from: into its own directory (default) or, with --out, a new one");
@@ -58,12 +70,17 @@ int command_line(int argc, char** argv) {
   compare_command->add_option("--tolerance", compare.tolerances, "tolerances, separated by commas [1e-2 to 1e-10]")
       ->delimiter(',')
       ->check(CLI::Range(1e-16, 1.0));
+  std::string stopping = "residual";
+  compare_command->add_option("--stopping", stopping,
+                              "when the Picard schemes stop: residual, or increment (the overdamped paper's eq. 27)")
+      ->check(CLI::IsMember({"residual", "increment"}))
+      ->capture_default_str();
   compare_command->add_option("--steps", compare.steps, "steps of the case before its configuration is frozen")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1000000000}))
       ->capture_default_str();
   compare_command->add_option("--out", compare.out, "output directory [runs/<case>-compare]");
   compare_command->add_option("--threads", compare.threads, "threads")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0, 4096))
       ->capture_default_str();
 
   CLI::App* info_command = app.add_subcommand("info", "version, build options, backends and machine");
@@ -71,11 +88,13 @@ int command_line(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 1;
+    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+    throw odpd::ConfigError(usage_error(app, e.what()));
   }
   odpd::set_quiet(quiet);
   odpd::catch_signals();
   if (run_command->parsed()) return odpd::run_case(run);
+  compare.increment_rule = stopping == "increment";
   if (compare_command->parsed()) return odpd::compare_solvers(compare);
   if (info_command->parsed()) std::fputs(odpd::info_text().c_str(), stdout);
   return 0;

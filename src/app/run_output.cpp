@@ -35,7 +35,7 @@ RunOutput<D>::RunOutput(fs::path directory, const Config& config, Simulation<D>&
     : directory_(std::move(directory)),
       config_(config),
       simulation_(simulation),
-      trajectory_(directory_, config.resolved(), ODPD_VERSION, simulation.settings().title) {}
+      trajectory_(directory_, portable_case(config), ODPD_VERSION, simulation.settings().title) {}
 
 template <int D>
 fs::path RunOutput<D>::series_path(std::size_t k) const {
@@ -44,7 +44,7 @@ fs::path RunOutput<D>::series_path(std::size_t k) const {
 
 template <int D>
 void RunOutput<D>::begin() {
-  write_file_atomically(directory_ / "case.toml", config_.resolved());
+  write_file_atomically(directory_ / "case.toml", portable_case(config_));
   for (std::size_t k = 0; k < simulation_.observers().size(); ++k) {
     const auto& observer = *simulation_.observers()[k];
     series_.push_back(nullptr);
@@ -68,7 +68,7 @@ void RunOutput<D>::resume(CheckpointReader& in) {
   const std::vector<std::int64_t> steps = state.read_integers("vtk_steps");
   for (std::size_t k = 0; k < times.size(); ++k)
     vtk_frames_.emplace_back(times[k], fmt::format("frames/{:010}.vtp", steps.at(k)));
-  write_file_atomically(directory_ / "case.toml", config_.resolved());
+  write_file_atomically(directory_ / "case.toml", portable_case(config_));
 }
 
 template <int D>

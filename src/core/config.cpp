@@ -30,16 +30,30 @@ std::string heading_text(const ConfigNode& table) {
   return table.is_element ? "under [[" + table.heading + "]]" : "under [" + table.heading + "]";
 }
 
+std::string place_of(const ConfigOrigin& at) {
+  if (!at.set_key.empty()) return "--set " + at.set_key;
+  return at.line > 0 ? fmt::format("{}:{}", at.file, at.line) : at.file;
+}
+
+/// A given key that nobody asked for and that looks like the missing `key`: most likely a slip.
+std::string likely_slip(const ConfigTable& table, const std::string& key) {
+  std::vector<std::string> strangers;
+  for (const auto& [name, node] : table.members) {
+    if (node->given && !table.asked.contains(name)) strangers.push_back(name);
+  }
+  const std::string near = nearest_name(key, strangers);
+  if (near.empty()) return "";
+  return fmt::format(", or correct '{}' ({})", near, place_of(table.find(near)->origin));
+}
+
 const ConfigNode& required_member(const ConfigTree& tree, ConfigNode& table,
                                   const std::string& key) {
   if (const ConfigNode* node = read_member(table, key)) return *node;
   // Of several [[elements]] the line tells which one; a plain table is found by its name.
   const ConfigOrigin at = table.is_element ? table.origin : ConfigOrigin{tree.name, 0, ""};
-  const std::string place = !at.set_key.empty() ? "--set " + at.set_key
-                            : at.line > 0       ? fmt::format("{}:{}", at.file, at.line)
-                                                : at.file;
-  throw ConfigError(fmt::format("{}: key '{}' is missing: add it {}", place,
-                                member_path(table.path, key), heading_text(table)));
+  throw ConfigError(fmt::format("{}: key '{}' is missing: add it {}{}", place_of(at),
+                                member_path(table.path, key), heading_text(table),
+                                likely_slip(*table.table(), key)));
 }
 
 // ---- values of a node

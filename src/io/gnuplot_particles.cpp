@@ -135,9 +135,10 @@ bool draw_particles(const std::filesystem::path& stem, const Frame& frame, int c
   std::string fluid, walls;
   std::vector<double> values;
   for (const std::size_t p : order) {
-    const double velocity = frame.velocity[p * static_cast<std::size_t>(frame.dimension) +
-                                           static_cast<std::size_t>(component)];
-    const bool wall = frame.group[p] != 0;
+    const std::size_t place =
+        p * static_cast<std::size_t>(frame.dimension) + static_cast<std::size_t>(component);
+    const double velocity = place < frame.velocity.size() ? frame.velocity[place] : 0.0;
+    const bool wall = p < frame.group.size() && frame.group[p] != 0;
     if (!wall && !std::isfinite(velocity)) continue;
     std::string& block = wall ? walls : fluid;
     block += fmt::format("{} {} {}\n", coordinate(frame, p, 0), coordinate(frame, p, 1),

@@ -19,6 +19,8 @@ void put(Text& text, fmt::format_string<Values...> format, Values&&... values) {
   fmt::format_to(std::back_inserter(text), format, std::forward<Values>(values)...);
 }
 
+// Arrays a frame does not have are left out.
+
 /// A flat array of vectors, filled up with zeros to the three components VTK wants.
 void put_vectors(Text& text, std::string_view name, const std::vector<double>& values,
                  std::size_t dimension) {
@@ -33,6 +35,7 @@ void put_vectors(Text& text, std::string_view name, const std::vector<double>& v
 }
 
 void put_integers(Text& text, std::string_view name, const std::vector<std::int64_t>& values) {
+  if (values.empty()) return;
   put(text, "<DataArray type=\"Int64\" Name=\"{}\" format=\"ascii\">\n{}\n</DataArray>\n", name,
       fmt::join(values, " "));
 }
@@ -85,8 +88,8 @@ void write_vtp(const std::filesystem::path& file, const Frame& frame) {
   put_vectors(text, "position", frame.position, dimension);
   put(text, "</Points>\n");
   put_vertices(text, count);
-  put(text, "<PointData Scalars=\"species\" Vectors=\"velocity\">\n");
-  put_vectors(text, "velocity", frame.velocity, dimension);
+  put(text, "<PointData>\n");
+  if (!frame.velocity.empty()) put_vectors(text, "velocity", frame.velocity, dimension);
   put_integers(text, "id", frame.id);
   put_integers(text, "species", frame.species);
   put_integers(text, "group", frame.group);

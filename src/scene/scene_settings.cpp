@@ -95,10 +95,13 @@ void read_fluid(const Config& config, SceneSettings<D>& scene) {
     fluid.fail("mass", "this version solves the massless case only (its integrators are trapezoidal and euler): set "
                        "mass = 0.0");
   if (fluid.has("density") && fluid.has("count")) fluid.fail("count", "give density or count, never both");
+  if (scene.start == StartKind::file && (fluid.has("density") || fluid.has("count")))
+    fluid.fail(fluid.has("density") ? "density" : "count", "the start file says how many particles there are: leave this "
+                                                           "key out, or set start.from");
   if (fluid.has("count")) {
     scene.count = fluid.integer("count");
     if (scene.count < 1) fluid.fail("count", "must be positive");
-  } else if (scene.start != StartKind::file || fluid.has("density")) {
+  } else if (scene.start != StartKind::file) {
     scene.density = fluid.positive("density");
   }
   DpdParameters base = read_pair(fluid, DpdParameters{}, true);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "odpd/core/error.h"
+#include "odpd/core/parallel.h"
 #include "odpd/core/timer.h"
 #include "odpd/solvers/assembled_solver.h"
 #include "odpd/solvers/backends.h"
@@ -134,6 +135,7 @@ Solver::Attempt EigenConjugateGradients::attempt_free(std::span<const double> b,
                                                       std::span<double> x, double tolerance) {
   const Eigen::Map<const Eigen::VectorXd> load(b.data(), static_cast<Eigen::Index>(b.size()));
   Eigen::Map<Eigen::VectorXd> solution(x.data(), static_cast<Eigen::Index>(x.size()));
+  Eigen::setNbThreads(threads());
   iteration_.setTolerance(tolerance);
   iteration_.setMaxIterations(iterations_left_);
   Attempt result;

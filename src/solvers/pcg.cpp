@@ -1,5 +1,5 @@
-// Preconditioned conjugate gradients on System::apply. On a projected system everything lives in the
-// range of Pi: the operator is Pi A Pi, the preconditioner Pi M^-1 Pi.
+// Preconditioned conjugate gradients on System::apply. On a projected system everything lives in
+// the range of Pi: the operator is Pi A Pi, the preconditioner Pi M^-1 Pi.
 #include <algorithm>
 #include <cmath>
 #include <memory>

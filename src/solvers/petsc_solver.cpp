@@ -78,8 +78,8 @@ void require_petsc() {
   });
 }
 
-/// While it lives, the user's options are in PETSc's database under our prefix, and PETSc's errors are
-/// kept for `check` instead of printed. Several solvers with different options can so live together.
+/// While it lives, the user's options are in PETSc's database under our prefix, so that solvers of
+/// different options live together, and PETSc's errors are kept for `check` instead of printed.
 class Entry {
  public:
   Entry(const std::vector<PetscOption>& options, std::set<std::string>& used)
@@ -87,7 +87,7 @@ class Entry {
     require_petsc();
     PetscPushErrorHandler(keep_message, nullptr);
     for (const PetscOption& o : options_) {
-      PetscOptionsSetValue(nullptr, ("-" + (prefix + o.name)).c_str(),
+      PetscOptionsSetValue(nullptr, fmt::format("-{}{}", prefix, o.name).c_str(),
                            o.value.empty() ? nullptr : o.value.c_str());
     }
   }
@@ -96,7 +96,7 @@ class Entry {
       PetscBool used = PETSC_FALSE;
       PetscOptionsUsed(nullptr, (prefix + o.name).c_str(), &used);
       if (used == PETSC_TRUE) used_.insert(o.name);
-      PetscOptionsClearValue(nullptr, ("-" + (prefix + o.name)).c_str());
+      PetscOptionsClearValue(nullptr, fmt::format("-{}{}", prefix, o.name).c_str());
     }
     PetscPopErrorHandler();
   }
@@ -168,7 +168,7 @@ MatNullSpace translations(const System& system) {
   return space;
 }
 
-/// What the coarse levels of a multigrid must hold: rigid-body motions, as far as the box allows them.
+/// What the coarse levels of a multigrid must hold: the rigid motions that the box allows.
 MatNullSpace near_null_space(const System& system) {
   const std::span<const double> positions = system.positions();
   const bool rotates = !positions.empty() && system.periodic_directions() == 0 &&
@@ -356,7 +356,7 @@ Solver::Attempt PetscSolver::outcome() {
   return result;
 }
 
-/// PETSc takes a misspelt option for somebody else's. After the first solve all of ours must be used.
+/// PETSc takes a misspelt option for somebody else's: after the first solve all must be used.
 void PetscSolver::reject_unused() {
   if (options_checked_) return;
   for (const PetscOption& o : user_) {

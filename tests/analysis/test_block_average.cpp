@@ -51,12 +51,12 @@ TEST(BlockAverage, AConstantHasNoError) {
   BlockAverage average;
   for (int k = 0; k < 5000; ++k) add(average, {0.75});
   EXPECT_EQ(average.mean(0), 0.75);
-  EXPECT_EQ(average.standard_error(0), 0.0);
+  EXPECT_NEAR(average.standard_error(0), 0.0, 1e-15);
 }
 
 // The estimated error over the true one, in 40 independent series. One estimate scatters by about
-// 1/sqrt(2 * 16) = 18 % at most, the mean of 40 by 3 %; taking the largest of up to three block lengths
-// lifts it by 10 to 20 %. Ignoring the correlation at phi = 0.9 would give 0.23.
+// 1/sqrt(2 * 16) = 18 % at most, the mean of 40 by 3 %; taking the largest of up to three block
+// lengths lifts it by 10 to 20 %. Ignoring the correlation at phi = 0.9 would give 0.23.
 TEST(BlockAverage, ErrorOfIndependentAndCorrelatedSamples) {
   for (const double phi : {0.0, 0.5, 0.9}) {
     constexpr std::size_t n = 20000, series = 40;
@@ -120,8 +120,8 @@ TEST(BlockAverage, RefusesADamagedState) {
   EXPECT_THROW(load(whole, 2), odpd::IoError);
 }
 
-// N = 3 Y + w with w of mean 0 and variance 0.04: the error of <N>/<Y> is 0.2/(<Y> sqrt(n)), not the
-// far larger one of N and Y alone. Ratio of estimate to truth over 30 series as above.
+// N = 3 Y + w with w of mean 0 and variance 0.04: the error of <N>/<Y> is 0.2/(<Y> sqrt(n)), not
+// the far larger one of N and Y alone. Ratio of estimate to truth over 30 series as above.
 TEST(BlockAverage, RatioErrorKnowsThatBothVaryTogether) {
   constexpr std::size_t n = 4000, series = 30;
   const std::vector<BlockAverage::RatioTerm> term{{1.0, 0, 1}};
@@ -139,7 +139,8 @@ TEST(BlockAverage, RatioErrorKnowsThatBothVaryTogether) {
     EXPECT_NEAR(average.ratio_error(twice), 2.0 * average.ratio_error(term), 1e-15);
     estimate += average.ratio_error(term) / exact / series;
     const double jackknife = average.jackknife_error([](const auto& m) { return m[0] / m[1]; });
-    EXPECT_NEAR(jackknife, average.ratio_error(term), 0.02 * jackknife) << "to first order the same";
+    EXPECT_NEAR(jackknife, average.ratio_error(term), 0.02 * jackknife)
+        << "to first order the same";
   }
   EXPECT_GT(estimate, 0.9);
   EXPECT_LT(estimate, 1.3);

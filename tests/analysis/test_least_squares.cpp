@@ -30,8 +30,10 @@ TEST(LeastSquares, ReproducesPolynomials) {
       for (std::size_t k = 0; k < y.size(); ++k) sum += fit.weight[p][k] * y[k];
       EXPECT_NEAR(sum, fit.coefficient[p], 1e-12) << "the weights give the coefficient";
     }
-    EXPECT_NEAR(fit(0.3), c[0] + (degree > 0 ? c[1] * 0.3 : 0.0) + (degree > 1 ? c[2] * 0.09 : 0.0) +
-                              (degree > 2 ? c[3] * 0.027 : 0.0), 1e-11);
+    EXPECT_NEAR(fit(0.3),
+                c[0] + (degree > 0 ? c[1] * 0.3 : 0.0) + (degree > 1 ? c[2] * 0.09 : 0.0) +
+                    (degree > 2 ? c[3] * 0.027 : 0.0),
+                1e-11);
     EXPECT_NEAR(fit.reduced_chi_square, 0.0, 1e-18);
   }
 }
@@ -45,7 +47,8 @@ TEST(LeastSquares, WeighsPointsByTheirErrors) {
 }
 
 // Over 400 fits of 10 points with true errors: mean reduced chi-square 1 with standard error
-// sqrt(2/(8 * 400)); slope variance sum (w e)^2 with relative standard error sqrt(2/400). Bounds: 5.
+// sqrt(2/(8 * 400)); slope variance sum (w e)^2 with relative standard error sqrt(2/400). Bounds:
+// 5.
 TEST(LeastSquares, ChiSquareAndWeightsAreStatisticallyRight) {
   constexpr std::size_t fits = 400;
   std::vector<double> x, error;

@@ -84,8 +84,9 @@ TEST_F(MakeObservers, RefuseWhatTheyDoNotKnow) {
 TEST_F(MakeObservers, RefuseTwoOfOneName) {
   refuse("kind = \"rdf\"\n[[observe]]\nkind = \"rdf\"\n", {"name", "'rdf'"});
   refuse("kind = \"rdf\"\nname = \"x\"\n[[observe]]\nkind = \"thermo\"\nname = \"x\"\n", {"'x'"});
-  EXPECT_EQ(make("[[observe]]\nkind = \"rdf\"\n[[observe]]\nkind = \"rdf\"\nname = \"fine\"\n").size(),
-            4u);
+  EXPECT_EQ(
+      make("[[observe]]\nkind = \"rdf\"\n[[observe]]\nkind = \"rdf\"\nname = \"fine\"\n").size(),
+      4u);
   refuse("kind = \"rdf\"\nname = \"thermo\"\n", {"'thermo'"});
 }
 

@@ -1,7 +1,6 @@
-#include "odpd/analysis/profile.h"
-
 #include <gtest/gtest.h>
 
+#include "odpd/analysis/profile.h"
 #include "records.h"
 #include "support/dimensions.h"
 #include "support/memory_archive.h"
@@ -19,8 +18,8 @@ using odpd::Vec;
 
 constexpr int bins = 8;
 
-// A channel of height 4 between surfaces at 1 and 5 moving with -+ 1, one particle in the middle of each
-// of 8 bins; no forces, so that the velocities are all there is.
+// A channel of height 4 between surfaces at 1 and 5 moving with -+ 1, one particle in the middle of
+// each of 8 bins; no forces, so that the velocities are all there is.
 template <int D>
 SceneSettings<D> channel() {
   std::vector<Vec<D>> r(bins, support::uniform_vec<D>(2.0));
@@ -31,7 +30,7 @@ SceneSettings<D> channel() {
   return s;
 }
 
-/// `samples` records of v_x = field(y) plus a number that sums to zero over every two samples.
+/// `samples` records of v_x = field(y) plus noise, which the second half of the samples takes back.
 template <int D, class Field>
 void measure(Profile<D>& profile, const Scene<D>& scene, int samples, const Field& field) {
   StepRecord<D> record = records::record(scene);
@@ -39,7 +38,9 @@ void measure(Profile<D>& profile, const Scene<D>& scene, int samples, const Fiel
   for (int t = 0; t < samples; ++t) {
     for (std::size_t i = 0; i < record.v_mid.size(); ++i) {
       if (!scene.particles().is_free(i)) continue;
-      const double w = (t % 2 == 0 ? 1.0 : -1.0) * noise[static_cast<std::size_t>(t / 2)];
+      const int half = samples / 2;
+      const double w = t < half ? noise[static_cast<std::size_t>(t)]
+                                : -noise[static_cast<std::size_t>(t - half)];
       record.v_mid[i][0] = field(scene.particles().position[i][1]) + 0.01 * w;
     }
     profile.measure(Clock{}, scene.particles(), record);
@@ -108,7 +109,8 @@ TYPED_TEST(ProfileTest, AParabolaGivesTheViscosity) {
   const Scene<D> scene(s);
   Profile<D> profile = make(scene, ProfileFit::parabola);
   // u = (f n/2 eta) ((2 + b)^2 - (y - 3)^2) with a slip length b = 0.25
-  measure(profile, scene, 400, [](double y) { return 0.2 * (2.25 * 2.25 - (y - 3.0) * (y - 3.0)); });
+  measure(profile, scene, 400,
+          [](double y) { return 0.2 * (2.25 * 2.25 - (y - 3.0) * (y - 3.0)); });
   const auto results = records::results(profile);
   const double density = 1.0 / (0.5 * std::pow(6.0, D - 1));
   EXPECT_NEAR(records::mean(results, "u.curvature"), -0.2, 1e-11);
@@ -126,8 +128,9 @@ TYPED_TEST(ProfileTest, OnlyBinsInTheRangeAreFitted) {
   EXPECT_NEAR(records::mean(records::results(profile), "u.slope"), 0.5, 1e-12);
 }
 
-// Slopes of independent noise: their scatter over 60 series against the reported error. Standard error
-// of the ratio of variances: sqrt(2/60) = 18 %; the block estimate is 0 to 30 % high in the error.
+// Slopes of independent noise: their scatter over 60 series against the reported error. Standard
+// error of the ratio of variances: sqrt(2/60) = 18 %; the block estimate is 0 to 30 % high in the
+// error.
 TEST(Profile, TheErrorOfTheSlopeIsThatOfRepeatedRuns) {
   const Scene<2> scene(channel<2>());
   double square = 0.0, reported = 0.0;

@@ -116,7 +116,8 @@ MsdSettings all_directions() {
   return m;
 }
 
-// Straight flight with velocity v: msd = v^2 t^2 exactly, through the borders and through reordering.
+// Straight flight with velocity v: msd = v^2 t^2 exactly, through the borders and through
+// reordering.
 TYPED_TEST(StructureTest, BallisticFlight) {
   constexpr int D = TypeParam::D;
   Walkers<D> walkers(20);
@@ -137,21 +138,26 @@ TYPED_TEST(StructureTest, BallisticFlight) {
     t.push_back(lag);
     y.push_back(square * lag * lag);
   }
-  const double slope = odpd::fit_polynomial(1, t, y, std::vector<double>(t.size(), 1.0)).coefficient[1];
+  const double slope =
+      odpd::fit_polynomial(1, t, y, std::vector<double>(t.size(), 1.0)).coefficient[1];
   EXPECT_NEAR(records::mean(results, "diffusion"), slope / (2 * D), 1e-10);
   EXPECT_LT(records::error(results, "diffusion"), 1e-10);
 }
 
-// Independent steps of variance 2 D dt per direction, D = 0.8. The slope over a window of 10 lags from
-// N = 60 particles and T = 400 samples: the relative standard error is near sqrt(10/(N T d)) = 1.4 to
-// 1.7 %; bound 5 times the reported error, which must be of that size.
+// Independent steps of variance 2 D dt per direction, D = 0.8. The slope over a window of 10 lags
+// from N = 60 particles and T = 400 samples: the relative standard error is near sqrt(10/(N T d)) =
+// 1.4 to 1.7 %; bound 5 times the reported error, which must be of that size.
 TYPED_TEST(StructureTest, ARandomWalkDiffuses) {
   constexpr int D = TypeParam::D;
   constexpr double diffusion = 0.8, dt = 0.1;
   Walkers<D> walkers(60);
   Msd<D> msd({.kind = "msd", .name = "msd"}, all_directions<D>(), walkers.scene, dt);
+  const odpd::CounterRandom random(1, odpd::Stream::probe);
   walkers.run(msd, 400, [&](std::size_t id, std::size_t t) {
-    return std::sqrt(2.0 * diffusion * dt) * support::random_vectors<D>(60, t)[id];
+    const auto w = random.normals(t, 0, id, 0);
+    Vec<D> step;
+    for (std::size_t c = 0; c < D; ++c) step.x[c] = std::sqrt(2.0 * diffusion * dt) * w[c];
+    return step;
   });
   const auto results = records::results(msd);
   const double error = records::error(results, "diffusion");

@@ -36,8 +36,9 @@ TYPED_TEST(ThermoTest, APair) {
   EXPECT_EQ(thermo.series_row().size(), thermo.series_columns().size());
 }
 
-// A fluid particle 0.6 behind the surface, right below the only particle of the wall: the edge counts
-// once in the energy, half in the virial, and only the free particle counts in the temperature.
+// A fluid particle 0.6 behind the surface, right below the only particle of the wall: the edge
+// counts once in the energy, half in the virial, and only the free particle counts in the
+// temperature.
 TYPED_TEST(ThermoTest, AParticleBetweenWalls) {
   constexpr int D = TypeParam::D;
   auto s = records::periodic<D>(4.0, {support::uniform_vec<D>(2.0)});
@@ -57,7 +58,8 @@ TYPED_TEST(ThermoTest, AParticleBetweenWalls) {
   const double volume = std::pow(4.0, D - 1) * 2.0, push = 50.0 * 0.6 - 4.0;
   const double laplacian = 10.0 - (D - 1) * 4.0 / 0.6 + 50.0;
   EXPECT_NEAR(records::mean(results, "second.energy_per_particle"), 0.8 + 25.0 * 0.36, 1e-11);
-  EXPECT_NEAR(records::mean(results, "second.pressure"), (0.5 + 0.5 * 0.6 * 4.0 / D) / volume, 1e-12);
+  EXPECT_NEAR(records::mean(results, "second.pressure"), (0.5 + 0.5 * 0.6 * 4.0 / D) / volume,
+              1e-12);
   EXPECT_NEAR(records::mean(results, "second.config_temperature"), push * push / laplacian, 1e-10);
 }
 
@@ -74,8 +76,8 @@ TEST(Thermo, AnIdealGasHasNoConfigurationalTemperature) {
   EXPECT_TRUE(std::isnan(records::mean(results, "config_temperature")));
 }
 
-// Samples of the canonical distribution of one particle in the harmonic well of the walls: u has the
-// mean kT/2 and the configurational temperature is kT. n independent samples: standard errors
+// Samples of the canonical distribution of one particle in the harmonic well of the walls: u has
+// the mean kT/2 and the configurational temperature is kT. n independent samples: standard errors
 // kT/sqrt(2 n) and kT sqrt(2/n); bounds 5 of them.
 TEST(Thermo, TemperatureOfAHarmonicWell) {
   constexpr double kT = 0.7;
@@ -95,7 +97,8 @@ TEST(Thermo, TemperatureOfAHarmonicWell) {
     thermo.measure(Clock{}, scene.particles(), records::record(scene));
   }
   const auto results = records::results(thermo);
-  EXPECT_NEAR(records::mean(results, "energy_per_particle"), 0.5 * kT, 5.0 * kT / std::sqrt(2.0 * n));
+  EXPECT_NEAR(records::mean(results, "energy_per_particle"), 0.5 * kT,
+              5.0 * kT / std::sqrt(2.0 * n));
   EXPECT_NEAR(records::mean(results, "config_temperature"), kT, 5.0 * kT * std::sqrt(2.0 / n));
   EXPECT_NEAR(records::error(results, "config_temperature"), kT * std::sqrt(2.0 / n),
               0.5 * kT * std::sqrt(2.0 / n));

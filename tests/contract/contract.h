@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "odpd/core/error.h"
+#include "odpd/core/parallel.h"
 #include "odpd/dynamics/dynamics.h"
 #include "odpd/scene/scene.h"
 #include "support/network.h"
@@ -24,8 +25,8 @@ inline std::string name(Geometry geometry) {
                                           : "open";
 }
 
-/// Fluid of density 4 in a cube of edge `length`; walls, one of them moving, lie outside it. An open
-/// box ends in the void: nothing but the operator can be asked there.
+/// Fluid of density 4 in a cube of edge `length`; walls, one of them moving, lie outside it. An
+/// open box ends in the void: nothing but the operator can be asked there.
 template <int D>
 odpd::SceneSettings<D> settings(Model model, Geometry geometry, double length) {
   odpd::SceneSettings<D> s;
@@ -64,6 +65,8 @@ class Instant {
       : scene(settings<D>(model, geometry, length)),
         dynamics(scene.box(), scene.particles(), scene.model(), scene, odpd::make_solver({}),
                  {.hold_centre_of_mass = hold}) {
+    // One thread, or the threads of several test programs at once wait for each other.
+    odpd::set_threads(1, 0);
     dynamics.evaluate(scene.particles().position, 0.0, stage);
     std::vector<odpd::Vec<D>> edge_noise;
     const auto xi = dynamics.draw_noise(stage, 3, 0.01, edge_noise);

@@ -1,18 +1,19 @@
-// What every solver owes the dynamics, on real DPD configurations: the true residual it promises, the
-// same velocities as all others, and an honest report when it fails.
+// What every solver owes the dynamics, on real DPD configurations: the true residual it promises,
+// the same velocities as all others, and an honest report when it fails.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "contract.h"
+#include "odpd/solvers/preconditioner.h"
 
 namespace {
 
 using contract::Geometry;
 using contract::Instant;
 using contract::Model;
-using odpd::SolverOptions;
 using odpd::SolveReport;
+using odpd::SolverOptions;
 
 /// A solver by name, with PETSc options or without.
 struct Choice {
@@ -67,19 +68,19 @@ class Solvers : public ::testing::TestWithParam<std::tuple<Choice, Geometry, int
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(
-    All, Solvers,
-    ::testing::Combine(::testing::ValuesIn(choices()),
-                       ::testing::Values(Geometry::walls, Geometry::periodic),
-                       ::testing::Values(2, 3)),
-    [](const auto& info) {
-      const Choice& choice = std::get<0>(info.param);
-      std::string name = choice.name;
-      if (!choice.petsc.empty()) name += choice.petsc.substr(choice.petsc.rfind(' ') + 1);
-      std::erase(name, '-');
-      return name + "_" + contract::name(std::get<1>(info.param)) + "_" +
-             std::to_string(std::get<2>(info.param)) + "D";
-    });
+INSTANTIATE_TEST_SUITE_P(All, Solvers,
+                         ::testing::Combine(::testing::ValuesIn(choices()),
+                                            ::testing::Values(Geometry::walls, Geometry::periodic),
+                                            ::testing::Values(2, 3)),
+                         [](const auto& test) {
+                           const Choice& choice = std::get<0>(test.param);
+                           std::string name = choice.name;
+                           if (!choice.petsc.empty())
+                             name += choice.petsc.substr(choice.petsc.rfind(' ') + 1);
+                           std::erase(name, '-');
+                           return name + "_" + contract::name(std::get<1>(test.param)) + "_" +
+                                  std::to_string(std::get<2>(test.param)) + "D";
+                         });
 
 template <int D>
 SolveReport solve(const Instant<D>& instant, const SolverOptions& options, std::vector<double>& x) {
@@ -124,10 +125,10 @@ TEST_P(Solvers, ReachTheTrueResidual) {
     const double residual = contract::true_residual(instant.resistance(), instant.load, x);
     EXPECT_LE(residual, 1e-6 * (1.0 + 1e-6));
     EXPECT_NEAR(report.residual, residual, 1e-6 * residual + 1e-14);
-    EXPECT_EQ(report.problem, instant.resistance().holds_centre_of_mass() ? "centre of mass held still"
-                              : geometry() == Geometry::periodic
-                                  ? "R v = f, null space removed"
-                                  : "R v = f");
+    EXPECT_EQ(report.problem, instant.resistance().holds_centre_of_mass()
+                                  ? "centre of mass held still"
+                              : geometry() == Geometry::periodic ? "R v = f, null space removed"
+                                                                 : "R v = f");
     expect_zero_mean(instant, x);
   });
 }
@@ -142,34 +143,40 @@ TEST_P(Solvers, AgreeWithTheDirectSolver) {
 }
 
 TEST_P(Solvers, SolveTheHeldProblem) {
-  if (geometry() == Geometry::periodic) GTEST_SKIP() << "there it is the null space problem";
   run(true, [&]<int D>(const Instant<D>& instant) {
-    ASSERT_TRUE(instant.resistance().holds_centre_of_mass());
+    // Without walls nothing needs holding: it is the null space problem as before.
+    ASSERT_EQ(instant.resistance().holds_centre_of_mass(), geometry() == Geometry::walls);
     std::vector<double> x;
     const SolveReport report = solve(instant, options(1e-8), x);
     ASSERT_TRUE(report.converged) << report.failure;
+    EXPECT_LE(contract::true_residual(instant.resistance(), instant.load, x), 1e-8 * (1.0 + 1e-6));
     const auto exact = reference(instant);
     EXPECT_LT(distance(x, exact), 1e-5);
     expect_zero_mean(instant, x);
-    // And it is another problem: the free fluid moves on the whole.
-    Instant<D> free(Model::central, geometry(), D == 2 ? 6.0 : 3.7, false);
-    EXPECT_GT(distance(exact, reference(free)), 1e-3);
+    if (geometry() == Geometry::walls) {
+      const Instant<D> free(Model::central, geometry(), D == 2 ? 6.0 : 3.7, false);
+      EXPECT_GT(distance(exact, reference(free)), 1e-3) << "the free fluid moves on the whole";
+    }
   });
 }
 
 TEST_P(Solvers, SayWhenTheyDoNotConverge) {
-  if (choice().name == "cholmod") GTEST_SKIP() << "a direct solver does not iterate";
   run(must_hold(), [&]<int D>(const Instant<D>& instant) {
     SolverOptions few = options(1e-12);
     few.max_iterations = 2;
     std::vector<double> x;
     const SolveReport report = solve(instant, few, x);
+    const double residual = contract::true_residual(instant.resistance(), instant.load, x);
+    if (choice().name == "cholmod") {
+      EXPECT_TRUE(report.converged) << "a direct solver does not iterate: " << report.failure;
+      EXPECT_LE(residual, 2e-12);
+      return;
+    }
     EXPECT_FALSE(report.converged);
     EXPECT_NE(report.failure.find(choice().name), std::string::npos) << report.failure;
     EXPECT_NE(report.failure.find("max_iterations"), std::string::npos) << report.failure;
     EXPECT_LE(report.iterations, 2);
     EXPECT_GT(report.residual, 1e-12);
-    const double residual = contract::true_residual(instant.resistance(), instant.load, x);
     EXPECT_NEAR(report.residual, residual, 1e-6 * residual);
   });
 }
@@ -189,9 +196,21 @@ TEST_P(Solvers, StartFromAGuess) {
   });
 }
 
-// The paper's rule |x_l - x_(l-1)| < tolerance |x_l| (eq. 27) stops an iteration that converges slowly
-// long before the residual is that small; the report tells the residual that was reached.
-TEST_P(Solvers, TheIncrementRuleIsLaxAndSaysSo) {
+// |D^-1 Pi (b - A x)| / |x|: what the next Picard step would change.
+double next_increment(const odpd::System& system, const std::vector<double>& b,
+                      const std::vector<double>& x) {
+  std::vector<double> r = contract::product(system, x), step(x.size());
+  for (std::size_t k = 0; k < r.size(); ++k) r[k] = b[k] - r[k];
+  if (system.projected()) odpd::remove_mean(r, system.block_size());
+  odpd::BlockJacobi inverse_diagonal;
+  inverse_diagonal.set_up(system);
+  inverse_diagonal.apply(r, step);
+  return support::norm(step) / support::norm(x);
+}
+
+// The paper's rule |x_l - x_(l-1)| < tolerance |x_l| (eq. 27): the step after the last changes a
+// little less than the tolerance, and the report tells the true residual that was reached.
+TEST_P(Solvers, OnlyPicardKnowsTheIncrementRule) {
   SolverOptions lax = options(1e-5);
   lax.stopping = odpd::Stopping::increment;
   if (!is_picard()) {
@@ -199,17 +218,18 @@ TEST_P(Solvers, TheIncrementRuleIsLaxAndSaysSo) {
     return;
   }
   run(must_hold(), [&]<int D>(const Instant<D>& instant) {
-    std::vector<double> x, strict;
+    std::vector<double> x;
     const SolveReport report = solve(instant, lax, x);
     ASSERT_TRUE(report.converged) << report.failure;
-    const SolveReport full = solve(instant, options(1e-5), strict);
-    ASSERT_TRUE(full.converged) << full.failure;
+    const double increment = next_increment(instant.resistance(), instant.load, x);
+    EXPECT_LT(increment, 1.01e-5);
+    EXPECT_GT(increment, 0.2e-5) << "it should have stopped before";
     const double residual = contract::true_residual(instant.resistance(), instant.load, x);
     EXPECT_NEAR(report.residual, residual, 1e-6 * residual);
     EXPECT_LT(distance(x, reference(instant)), 0.05);
-    if (geometry() == Geometry::walls) {
-      EXPECT_LT(report.iterations, full.iterations);
-      EXPECT_GT(report.residual, 1e-5);
+    // Where the slow modes are large, as between walls in two dimensions, the rule is lax.
+    if (choice().name == "picard" && geometry() == Geometry::walls && D == 2) {
+      EXPECT_GT(residual, 1e-5);
     }
   });
 }

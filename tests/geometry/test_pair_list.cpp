@@ -228,7 +228,8 @@ TYPED_TEST(PairListTest, SpatialOrderBringsNeighboursTogether) {
   const auto order = odpd::spatial_order<D>(box, 1.0, r, id);
   auto sorted = order;
   std::sort(sorted.begin(), sorted.end());
-  for (std::size_t k = 0; k < sorted.size(); ++k) ASSERT_EQ(sorted[k], static_cast<std::int32_t>(k));
+  for (std::size_t k = 0; k < sorted.size(); ++k)
+    ASSERT_EQ(sorted[k], static_cast<std::int32_t>(k));
   std::vector<Vec<D>> moved;
   for (const std::int32_t k : order) moved.push_back(r[static_cast<std::size_t>(k)]);
   EXPECT_LT(memory_distance(box, moved), 0.5 * memory_distance(box, r));

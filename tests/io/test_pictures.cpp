@@ -69,6 +69,19 @@ assert numbers(root.find('PolyData/FieldData/DataArray')) == [0.1]
   }
 }
 
+TEST(Vtp, LeavesOutWhatTheFrameDoesNotHave) {
+  const TemporaryDirectory directory;
+  Frame frame;
+  frame.id = {0, 1};
+  frame.position = {1.0, 2.0, 3.0, 4.0};
+  write_vtp(directory / "frame.vtp", frame);
+  const std::string text = read_file(directory / "frame.vtp");
+  EXPECT_NE(text.find("1 2 0\n3 4 0\n"), std::string::npos);
+  EXPECT_NE(text.find("\"id\""), std::string::npos);
+  EXPECT_EQ(text.find("\"velocity\""), std::string::npos);
+  EXPECT_EQ(text.find("\"species\""), std::string::npos);
+}
+
 TEST(Pvd, ListsTimesAndEscapedNames) {
   const TemporaryDirectory directory;
   write_pvd(directory / "all.pvd", {{0.5, "a<b>&\"c\".vtp"}, {1.0 / 3.0, "2.vtp"}});
@@ -137,6 +150,10 @@ TEST(Gnuplot, DrawsParticles) {
     expect_pictures(directory / "frame");
   }
   Frame bare;
+  bare.id = {0, 1};
+  bare.position = {1.0, 2.0, 3.0, 4.0};
+  EXPECT_TRUE(draw_particles(directory / "frame", bare, 0));
+  bare = {};
   EXPECT_TRUE(draw_particles(directory / "frame", bare, 0));
   EXPECT_THROW(draw_particles(directory / "frame", sample_frame(2, 9, 1), 2), IoError);
 }

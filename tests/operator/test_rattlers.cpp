@@ -20,8 +20,8 @@ struct Lonely {
   Fluid<D> fluid{12.0, true};
 
   Lonely() {
-    const auto drop = support::random_points<D>(
-        support::uniform_vec<D>(1.0), support::uniform_vec<D>(2.5), D == 2 ? 25 : 60, 1);
+    const auto drop = support::random_points<D>(support::uniform_vec<D>(1.0),
+                                                support::uniform_vec<D>(2.5), D == 2 ? 25 : 60, 1);
     for (const auto& r : drop) fluid.particles.add(r, 0, 0);
   }
   /// A particle at (8, 8, 8) + offset; known ones do not need neighbours.

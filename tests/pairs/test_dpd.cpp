@@ -53,7 +53,8 @@ TEST(Dpd, NothingActsFromTheCutoffOn) {
   EXPECT_EQ(DpdModel<3>(1, {standard()}).cutoff(), 1.2);
 }
 
-// Central differences of step h: error of order h^2 times the third derivative, far below the bound.
+// Central differences of step h: error of order h^2 times the third derivative, far below the
+// bound.
 TEST(Dpd, ForceAndStiffnessAreDerivatives) {
   for (const double s_bar : {0.5, 1.0, 1.7, 2.0, 3.0}) {
     DpdParameters p = standard();

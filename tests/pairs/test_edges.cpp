@@ -42,8 +42,9 @@ std::map<std::pair<std::int64_t, std::int64_t>, Seen<D>> by_identity(const Fluid
   for (std::size_t k = 0; k < static_cast<std::size_t>(n.size()); ++k) {
     const auto i = fluid.particles.id[static_cast<std::size_t>(n.i[k])];
     const auto j = fluid.particles.id[static_cast<std::size_t>(n.j[k])];
-    const Seen<D> seen{(i < j ? 1.0 : -1.0) * n.e[k],
-                       {n.r[k], n.u[k], n.f_c[k], n.k_c[k], n.zeta_par[k], n.zeta_perp[k], n.kT[k]}};
+    const Seen<D> seen{
+        (i < j ? 1.0 : -1.0) * n.e[k],
+        {n.r[k], n.u[k], n.f_c[k], n.k_c[k], n.zeta_par[k], n.zeta_perp[k], n.kT[k]}};
     EXPECT_TRUE(edges.emplace(std::minmax(i, j), seen).second) << "an edge twice";
   }
   return edges;

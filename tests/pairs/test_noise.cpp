@@ -117,8 +117,7 @@ TYPED_TEST(NoiseTest, CovarianceOfAnEdge) {
   for (int a = 0; a < D; ++a) {
     EXPECT_LT(std::abs(mean[a]), 5.0 * std::sqrt(exact(a, a) / n));
     for (int b = 0; b < D; ++b) {
-      const double error =
-          std::sqrt((exact(a, a) * exact(b, b) + exact(a, b) * exact(a, b)) / n);
+      const double error = std::sqrt((exact(a, a) * exact(b, b) + exact(a, b) * exact(a, b)) / n);
       const double estimate = sum[static_cast<std::size_t>(a * D + b)];
       EXPECT_LT(std::abs(estimate - exact(a, b)), 5.0 * error);
       if (a != b) continue;

@@ -67,8 +67,8 @@ TEST(Fill, AChannelHasItsWallsAndItsFluid) {
     if (!p.is_free(i)) layers[{p.group[i], p.position[i][1]}].push_back(p.position[i][0]);
   }
   ASSERT_EQ(layers.size(), 4u);
-  for (const auto& [where, count] : {std::pair{std::pair{1, 1.0}, 50}, {{1, 0.5}, 20},
-                                     {{2, 11.0}, 50}, {{2, 11.5}, 20}}) {
+  for (const auto& [where, count] :
+       {std::pair{std::pair{1, 1.0}, 50}, {{1, 0.5}, 20}, {{2, 11.0}, 50}, {{2, 11.5}, 20}}) {
     std::vector<double> x = layers[where];
     ASSERT_EQ(x.size(), static_cast<std::size_t>(count)) << "at height " << where.second;
     std::sort(x.begin(), x.end());

@@ -1,8 +1,7 @@
-#include "odpd/scene/scene.h"
-
 #include <gtest/gtest.h>
 
 #include "cases.h"
+#include "odpd/scene/scene.h"
 #include "support/dimensions.h"
 #include "support/points.h"
 
@@ -43,14 +42,15 @@ template <class T>
 class SceneTest : public ::testing::Test {};
 TYPED_TEST_SUITE(SceneTest, support::Dimensions);
 
-// The potential is quadratic, so central differences are exact up to rounding away from the surface.
+// The potential is quadratic, so central differences are exact up to rounding away from the
+// surface.
 TYPED_TEST(SceneTest, WallForceIsMinusTheGradientOfTheEnergy) {
   constexpr int D = TypeParam::D;
   const Scene<D> scene(duct<D>());
   const auto& particles = scene.particles();
   const auto free = static_cast<std::size_t>(particles.size()) - 2;
-  const auto trials = support::random_points<D>(support::uniform_vec<D>(-0.5),
-                                                support::uniform_vec<D>(6.5), 60, 3);
+  const auto trials =
+      support::random_points<D>(support::uniform_vec<D>(-0.5), support::uniform_vec<D>(6.5), 60, 3);
   std::vector<double> ignored(particles.position.size());
   const auto energy = [&](const std::vector<Vec<D>>& r) {
     return scene.potential_energy(particles, r, ignored);
@@ -84,8 +84,8 @@ TYPED_TEST(SceneTest, WallForcesAddUpInACorner) {
   constexpr int D = TypeParam::D;
   const Scene<D> scene(duct<D>());
   std::vector<Vec<D>> r = scene.particles().position;
-  r.back()[0] = 0.8;        // 0.2 behind x-
-  r.back()[D - 1] = 5.0;    // 0.1 (D - 1) behind the upper wall
+  r.back()[0] = 0.8;      // 0.2 behind x-
+  r.back()[D - 1] = 5.0;  // 0.1 (D - 1) behind the upper wall
   std::vector<Vec<D>> force(r.size());
   scene.add_potential_forces(scene.particles(), r, force);
   EXPECT_NEAR(force.back()[0], 300.0 * 0.2, 1e-10);

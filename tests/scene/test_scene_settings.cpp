@@ -101,16 +101,18 @@ TEST(SceneSettings, RefusesBadFluids) {
   refuse(channel, {"seed=-1"}, {"seed"});
   refuse(channel, {"start.from=grid"}, {"start.from", "lattice"});
   refuse(channel, {"start.relax_sweeps=-1"}, {"relax_sweeps"});
-  refuse("[box]\nsize = [9.0, 9.0]\nperiodic = [true, true]\n"
-         "[fluid]\ndensity = 4.0\na = 1.0\nkT = 0.0\nsigma = 3.0\n",
-         {}, {"case.toml:", "sigma", "gamma"});
+  refuse(
+      "[box]\nsize = [9.0, 9.0]\nperiodic = [true, true]\n"
+      "[fluid]\ndensity = 4.0\na = 1.0\nkT = 0.0\nsigma = 3.0\n",
+      {}, {"case.toml:", "sigma", "gamma"});
 }
 
 TEST(SceneSettings, RefusesBadBoxes) {
   refuse(channel, {"box.size=[10.0]"}, {"box.size", "2 components"});
   refuse(channel, {"box.size=[10.0, -12.0]"}, {"box.size", "positive"});
   refuse(channel, {"box.periodic=[true]"}, {"box.periodic", "2 flags"});
-  refuse(channel, {"box.periodic=[false, false]"}, {"direction x is bounded", "x-"});
+  refuse(channel, {"box.periodic=[false, false]", "wall.1.velocity=[0.0, 0.0]"},
+         {"direction x is bounded", "x-"});
 }
 
 TEST(SceneSettings, RefusesBadWalls) {

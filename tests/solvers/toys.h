@@ -56,8 +56,8 @@ inline Network clique(int dimension, std::int32_t nodes, std::uint32_t seed) {
   return net;
 }
 
-/// Random points at number density 4; periodic in every direction, or an open box. Points below height
-/// `wall` are at rest and no unknowns. Spring weights are sqrt(1 - r).
+/// Random points at number density 4; periodic in every direction, or an open box. Points below
+/// height `wall` are at rest and no unknowns. Spring weights are sqrt(1 - r).
 inline Network network(int dimension, std::int32_t points, bool periodic, double wall,
                        std::uint32_t seed) {
   const std::size_t d = static_cast<std::size_t>(dimension);

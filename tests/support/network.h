@@ -1,5 +1,6 @@
 #pragma once
-// Particles in a box with the pair network of a DPD model, and R as a dense matrix by its definition.
+// Particles in a box with the pair network of a DPD model, and R as a dense matrix by its
+// definition.
 #include <cstdint>
 #include <vector>
 
@@ -48,8 +49,8 @@ void add_block(const odpd::PairNetwork<D>& network, std::size_t edge, double sig
       const double along = e[a] * e[b];
       const double z =
           network.zeta_par[edge] * along + network.zeta_perp[edge] * ((a == b ? 1.0 : 0.0) - along);
-      matrix[static_cast<std::size_t>(row * D + a) * n + static_cast<std::size_t>(column * D + b)] +=
-          sign * z;
+      matrix[static_cast<std::size_t>(row * D + a) * n +
+             static_cast<std::size_t>(column * D + b)] += sign * z;
     }
   }
 }

@@ -6,6 +6,7 @@
 //   profile           density, velocity and configurational temperature across bins, with a fit
 //   density-residual  unevenness of the time-averaged density on a grid
 //   rdf               radial distribution functions per pair of species
+//   wall-force        force per area on each wall, shear stress between two
 //   msd               mean-square displacement and self-diffusion per species
 #include <memory>
 #include <string>

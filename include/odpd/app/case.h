@@ -54,7 +54,10 @@ CaseSettings read_case(const Config& config, const std::string& name);
 template <int D>
 void read_start_file(SceneSettings<D>& scene);
 
-/// The values that a restart must find unchanged: all but title, run.duration, [solver], [output] and [[check]].
+/// The resolved case as TOML, its start file absolute: it runs from whatever directory it is put in.
+std::string portable_case(const Config& config);
+/// The values that a restart must find unchanged: all but title, run.duration, start.file (whose particles are in the
+/// checkpoint), [solver], [output] and [[check]].
 std::vector<std::pair<std::string, std::string>> fixed_values(const Config& config);
 
 }  // namespace odpd

@@ -1,6 +1,6 @@
 #pragma once
-// Backends that work on the assembled matrix and know nothing of a held centre of mass. The constraint
-// is met by the Schur complement, with E the translations:
+// Backends that work on the assembled matrix and know nothing of a held centre of mass. The
+// constraint is met by the Schur complement, with E the translations:
 //
 //   Pi A x = Pi b, E^T x = 0   <=>   x = y - Z (E^T Z)^-1 E^T y,   A y = b,   A Z = E
 #include <cstdint>
@@ -15,8 +15,8 @@ class AssembledSolver : public Solver {
  protected:
   using Solver::Solver;
 
-  /// Copies `a` (which lives in the system) to the backend and prepares it. Adds the seconds of the copy
-  /// to assembly_seconds_.
+  /// Copies `a` (which lives in the system) to the backend and prepares it. Adds the seconds of the
+  /// copy to assembly_seconds_.
   virtual void set_up_matrix(const BlockCsr& a) = 0;
   /// Solves A x = b without the constraint (b is projected where translations are null).
   virtual Attempt attempt_free(std::span<const double> b, std::span<double> x,

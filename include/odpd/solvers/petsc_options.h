@@ -10,8 +10,8 @@ struct PetscOption {
   std::string value;  ///< empty for a flag
 };
 
-/// Throws ConfigError for text that is not a list of options, for an option given twice, and for the
-/// PETSc options that solver.tolerance and solver.max_iterations stand for.
+/// Throws ConfigError for text that is not a list of options, for an option given twice, and for
+/// the PETSc options that solver.tolerance and solver.max_iterations stand for.
 std::vector<PetscOption> parse_petsc_options(const std::string& text);
 
 /// The value of `name`, or `fallback` when it is not among the options.

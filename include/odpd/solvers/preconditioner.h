@@ -11,8 +11,8 @@ namespace odpd {
 /// Throws SolverError naming the first node whose diagonal block is not positive definite.
 void require_definite_diagonal(const System& system);
 
-/// Replaces a symmetric b x b block (row-major) by its inverse; false, and the block spoilt, when it is
-/// not positive definite to rounding.
+/// Replaces a symmetric b x b block (row-major) by its inverse; false, and the block spoilt, when
+/// it is not positive definite to rounding.
 bool invert_definite(std::span<double> block, int b);
 
 class Preconditioner {

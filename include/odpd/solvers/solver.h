@@ -1,8 +1,8 @@
 #pragma once
 // Solvers of A x = b (operator/system.h) behind one interface, made by name.
 //
-//   picard           x := x + D^-1 (b - A x), D the block diagonal       (Phan-Thien et al. 2016, eq. 24)
-//   picard-deflated  x := x + D^-1 Pi (b - A x) - E E^T x, Scheme 2      (eq. 41-46)
+//   picard           x := x + D^-1 (b - A x), D diagonal blocks (Phan-Thien et al. 2016, eq. 24)
+//   picard-deflated  x := x + D^-1 Pi (b - A x) - E E^T x, Scheme 2  (ibid., eq. 41-46)
 //   pcg              conjugate gradients, block-Jacobi preconditioned, on the rank-1 operator
 //   eigen-cg         Eigen::ConjugateGradient on the assembled matrix
 //   cholmod          SuiteSparse sparse Cholesky
@@ -21,7 +21,7 @@ namespace odpd {
 /// When an iteration stops.
 enum class Stopping {
   residual,  ///< |Pi (b - A x)| <= tolerance |Pi b|, the true residual (the default)
-  increment,  ///< |x_l - x_{l-1}| < tolerance |x_l|: the lax rule of Phan-Thien et al. 2016, eq. 27; Picard only
+  increment,  ///< |x_l - x_{l-1}| < tolerance |x_l|, Picard only: lax (ibid., eq. 27)
 };
 
 struct SolverOptions {
@@ -29,7 +29,7 @@ struct SolverOptions {
   double tolerance = 1e-5;  ///< relative, see Stopping
   std::int64_t max_iterations = 100000;
   Stopping stopping = Stopping::residual;
-  std::string petsc_options;  ///< "-ksp_type cg -pc_type icc", without a prefix
+  std::string petsc_options = {};  ///< "-ksp_type cg -pc_type icc", without a prefix
 };
 
 struct SolveReport {
@@ -52,10 +52,12 @@ class Solver {
   virtual ~Solver() = default;
   const std::string& name() const { return options_.name; }
 
-  /// Set-up for `system`, which must outlive the following solves. Call again when its generation changed.
+  /// Set-up for `system`, which must outlive the following solves. Call again when its generation
+  /// changed.
   void bind(const System& system);
-  /// Solves from the initial guess in x (size system.size()). Never throws for lack of convergence: the
-  /// report says so and the caller must act on it. x has zero mean where the problem is projected.
+  /// Solves from the initial guess in x (size system.size()). Never throws for lack of convergence:
+  /// the report says so and the caller must act on it. x has zero mean where the problem is
+  /// projected.
   SolveReport solve(std::span<const double> b, std::span<double> x);
 
   Solver(const Solver&) = delete;
@@ -70,11 +72,13 @@ class Solver {
     std::string failure;  ///< empty with ok = false: the iterations ran out
   };
 
-  /// Backend set-up for *system_; throws SolverError when A cannot be set up (e.g. a singular block).
+  /// Backend set-up for *system_; throws SolverError when A cannot be set up (e.g. a singular
+  /// block).
   virtual void set_up() = 0;
-  /// One backend solve to `tolerance` (relative to |b|) of the problem that system_ states, in at most
-  /// iterations_left_ iterations. b is already projected where the problem is; x holds the guess. Called
-  /// again on the residual by `solve` (iterative refinement) while the true residual is above the tolerance.
+  /// One backend solve to `tolerance` (relative to |b|) of the problem that system_ states, in at
+  /// most iterations_left_ iterations. b is already projected where the problem is; x holds the
+  /// guess. Called again on the residual by `solve` (iterative refinement) while the true residual
+  /// is above the tolerance.
   virtual Attempt attempt(std::span<const double> b, std::span<double> x, double tolerance) = 0;
   virtual std::int64_t memory_bytes() const = 0;
 
@@ -106,8 +110,9 @@ class Solver {
 /// Names make_solver accepts, in table order. `available_solvers` leaves out what this build lacks.
 std::vector<std::string> solver_names();
 std::vector<std::string> available_solvers();
-/// Throws ConfigError for an unknown name (listing the names), for a backend this build lacks, and for
-/// options that contradict the name (Stopping::increment outside Picard, petsc_options elsewhere).
+/// Throws ConfigError for an unknown name (listing the names), for a backend this build lacks, and
+/// for options that contradict the name (Stopping::increment outside Picard, petsc_options
+/// elsewhere).
 std::unique_ptr<Solver> make_solver(const SolverOptions& options);
 
 }  // namespace odpd

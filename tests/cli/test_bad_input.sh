@@ -1,0 +1,186 @@
+#!/usr/bin/env bash
+# Wrong cases, options and inputs: one message that tells what, where and the remedy, and the right exit code.
+source "$(dirname "$0")/lib.sh" "$@"
+
+write_periodic box
+write_walled channel
+
+# bad NAME: a copy of the periodic case under a name of its own, to be spoilt by the caller.
+bad() {
+  rm -rf "$1"
+  cp -r box "$1"
+}
+# replace DIRECTORY OLD NEW: in its case file.
+replace() { sed -i "s|$2|$3|" "$1/case.toml"; }
+line_of() { grep -n -- "$2" "$1/case.toml" | cut -d: -f1; }
+run() { "$odpd" run "$@"; }
+
+# --- the command line ---
+expect_exit 0 "$odpd" --help
+expect_text "$out_text" run compare info 'Exit codes'
+expect_exit 0 "$odpd" run --help
+expect_text "$out_text" --set --out --threads --restart --dry-run
+expect_exit 0 "$odpd" --version
+expect_text "$out_text" odpd
+expect_exit 0 "$odpd" info
+expect_text "$out_text" solvers pcg integrators trapezoidal
+expect_error 1 "$odpd" -- --help
+expect_error 1 "$odpd" simulate box -- simulate 'run, compare, info'
+expect_error 1 run -- case
+expect_error 1 run box --thread 2 -- --thread
+expect_error 1 run box --threads many -- --threads many
+expect_error 1 run box --threads -1 -- --threads
+expect_error 1 run missing -- missing
+expect_error 1 run missing.toml -- missing.toml
+mkdir -p empty
+expect_error 1 run empty -- case.toml
+
+# --- keys and values, each with its file, line and key ---
+bad misspelt
+replace misspelt 'gamma = 4.5' 'gama = 4.5'
+expect_error 1 run misspelt -- 'fluid.gamma'
+bad extra
+replace extra 'a = 18.5' 'a = 18.5\ngama_perp = 1.0'
+expect_error 1 run extra -- "extra/case.toml:$(line_of extra gama_perp)" fluid.gama_perp "'gamma_perp'"
+bad table
+printf '\n[solvers]\nname = "pcg"\n' >>table/case.toml
+expect_error 1 run table -- 'table/case.toml:' solvers "'solver'"
+bad type
+replace type 'a = 18.5' 'a = "strong"'
+expect_error 1 run type -- "type/case.toml:$(line_of type strong)" fluid.a number
+bad negative
+replace negative 'dt = 0.005' 'dt = -0.005'
+expect_error 1 run negative -- "negative/case.toml:$(line_of negative -0.005)" integrator.dt positive
+bad nan
+replace nan 'kT = 1.0' 'kT = nan'
+expect_error 1 run nan -- "nan/case.toml:$(line_of nan nan)" fluid.kT finite
+bad syntax
+replace syntax 'kT = 1.0' 'kT = '
+expect_error 1 run syntax -- "syntax/case.toml:$(line_of syntax 'kT')"
+bad twice
+replace twice 'a = 18.5' 'a = 18.5\na = 3.0'
+expect_error 1 run twice -- 'twice/case.toml:'
+bad both
+replace both 'gamma = 4.5' 'gamma = 4.5\nsigma = 3.0'
+expect_error 1 run both -- "both/case.toml:$(line_of both sigma)" fluid.sigma gamma
+expect_error 1 run box --set fluid.mass=1.0 -- '--set fluid.mass' massless
+expect_error 1 run box --set dimension=4 -- '--set dimension' '2 or 3'
+expect_error 1 run box --set seed=-3 -- '--set seed'
+expect_error 1 run box --set run.duration=0.001 -- '--set run.duration' integrator.dt
+expect_error 1 run box --set run.duration=1e30 -- '--set run.duration'
+expect_error 1 run box --set fluid.count=0 -- '--set fluid.count'
+expect_error 1 run box --set output.trajectory_every=-1 -- '--set output.trajectory_every'
+
+# --- overrides ---
+expect_error 1 run box --set fluid.b=1.0 -- '--set fluid.b'
+expect_error 1 run box --set fluid.a -- '--set fluid.a'
+expect_error 1 run box --set fluid.a=strong -- '--set fluid.a' number
+expect_error 1 run box --set fluid.a.b=1 -- '--set fluid.a.b'
+expect_error 1 run channel --set wall.5.thickness=1.0 -- '--set wall.5.thickness'
+
+# --- names ---
+expect_error 1 run box --set solver.name=gmres -- '--set solver.name' picard-deflated pcg eigen-cg cholmod
+expect_error 1 run box --set solver.name=pgc -- "'pcg'"
+expect_error 1 run box --set integrator.name=verlet -- '--set integrator.name' trapezoidal euler
+expect_error 1 run box --set 'observe=[{kind="profil"}]' -- kind "'profile'"
+expect_error 1 run box --set 'observe=[{kind="rdf"}, {kind="rdf"}]' -- rdf name
+
+# --- contradictions in the scene ---
+expect_error 1 run box --set 'box.size=[1.5, 4.0]' -- cutoff 1.5
+expect_error 1 run box --set 'box.size=[4.0]' -- '--set box.size' 2
+expect_error 1 run box --set 'box.periodic=[true, false]' -- '--set box.periodic' '[[wall]]'
+expect_error 1 run channel --set 'box.periodic=[true, true]' -- side periodic
+bad two_walls
+cp channel/case.toml two_walls/case.toml
+replace two_walls 'side = "y+"' 'side = "y-"'
+expect_error 1 run two_walls -- "two_walls/case.toml:$(line_of two_walls 'side = "y-"' | tail -n 1)" 'two walls' 'y-'
+expect_error 1 run channel --set wall.0.thickness=3.0 -- '--set wall.0.thickness'
+expect_error 1 run channel --set 'wall.0.velocity=[0.0, 1.0]' -- '--set wall.0.velocity'
+expect_error 1 run channel --set 'wall.0.layers=[]' -- '--set wall.0.layers'
+expect_error 1 run box --set 'body_force.force=[1.0, 0.0]' -- '--set body_force.force' periodic walls
+expect_error 1 run box --set 'species=[{name="A", fraction=0.5}]' -- fraction
+
+# --- solvers ---
+if "$odpd" info | grep -q '^ *solvers .*petsc'; then
+  expect_error 1 run box --set solver.name=petsc --set 'solver.petsc_options="-pc_nonsense 3"' -- pc_nonsense
+  expect_error 1 run box --set solver.name=petsc --set 'solver.petsc_options="-pc_type nonsense"' -- nonsense
+  expect_error 1 run box --set solver.name=petsc --set 'solver.petsc_options="-ksp_rtol 1e-3"' -- solver.tolerance
+else
+  skip 'PETSc options: this build has no PETSc'
+  expect_error 1 run box --set solver.name=petsc -- PETSc
+fi
+expect_error 1 run box --set 'solver.petsc_options="-pc_type jacobi"' -- solver.petsc_options
+expect_error 1 run box --set solver.stopping=increment -- solver.stopping pcg
+expect_error 1 run box --set solver.tolerance=2.0 -- '--set solver.tolerance'
+expect_error 1 run box --set solver.max_iterations=0 -- '--set solver.max_iterations'
+expect_error 2 run box --set solver.max_iterations=2 --out stuck -- 'step 0' pcg solver.max_iterations
+# Particles without neighbours: both cures are named, and each of them works.
+sparse=(--set fluid.density=0.8 --set fluid.a=0.0 --set 'box.size=[10.0, 10.0]')
+expect_error 2 run box "${sparse[@]}" --out rattlers -- neighbour rattler_friction
+expect_exit 0 run box "${sparse[@]}" --set 'fluid.rattler_friction={gamma=0.1, cutoff=2.5}' --out cured
+
+# --- a failure in the middle of a run leaves what was written before ---
+cat >>channel/case.toml <<'CASE'
+[[observe]]
+kind = "thermo"
+series = true
+every = 1
+[output]
+checkpoint_every = 5
+trajectory_every = 5
+pictures = false
+CASE
+# A repulsion far too strong for the step throws particles about until the run stops.
+expect_exit 2 run channel --set integrator.dt=0.5 --set run.equilibrate=0.0 --set run.duration=500.0 --out blown
+expect_one_error
+expect test -s blown/case.toml
+expect_exit 0 run channel --out short
+expect_error 2 run channel --set run.duration=1.0 --restart short/checkpoint.h5 --set solver.max_iterations=2 \
+  -- solver.max_iterations
+expect_exit 0 run channel --set run.duration=0.3 --restart short/checkpoint.h5
+
+# --- start files ---
+start() { run "$1" --set start.from=file --set "start.file=\"$2\"" "${@:3}"; }
+printf 'x,y\n0.5,0.5\n1.0,1.0\n1.5,0.8\n1.0,0.5\n' >box/good.csv
+printf 'x,y\n0.5,0.5\n1.0,1.0,3\n' >box/ragged.csv
+printf 'x,y\n0.5,0.5\n1.0,here\n' >box/word.csv
+printf 'x,y\n0.5,0.5\n1.0,nan\n' >box/nan.csv
+printf 'x,z\n0.5,0.5\n' >box/columns.csv
+printf 'x,y\n' >box/none.csv
+: >box/empty.csv
+printf 'x,y,species\n0.5,0.5,fluid\n1.0,1.0,polymer\n' >box/species.csv
+printf 'not HDF5\n' >box/broken.h5
+expect_error 3 start box missing.csv -- missing.csv
+expect_error 3 start box ragged.csv -- ragged.csv:3
+expect_error 1 start box word.csv -- word.csv:3 "'y'" here
+expect_error 1 start box nan.csv -- nan.csv:3 "'y'" nan
+expect_error 1 start box columns.csv -- columns.csv "'y'"
+expect_error 1 start box none.csv -- none.csv
+expect_error 3 start box empty.csv -- empty.csv
+expect_error 1 start box species.csv -- species.csv:3 polymer
+expect_error 3 start box broken.h5 -- broken.h5 HDF5
+expect_error 1 start box case.toml -- case.toml CSV
+cp box/good.csv channel/good.csv
+expect_error 1 start channel good.csv -- good.csv 'particle 0' y
+expect_exit 0 start box good.csv --set 'fluid.rattler_friction={gamma=0.1, cutoff=2.0}' --out started
+
+# --- checks ---
+cat >box/checked.toml <<'CASE'
+include = "case.toml"
+[output]
+pictures = false
+[[check]]
+observable = "presure"
+expected = 1.0
+tolerance = 100.0
+CASE
+expect_exit 4 run box/checked.toml --out checked
+expect_text "$out_text" FAILED presure energy_per_particle pressure config_temperature
+expect_exit 4 run box/checked.toml --set check.0.observable=pressure --set check.0.tolerance=0.1 --out checked
+expect_text "$out_text" FAILED 'outside the tolerance'
+expect_exit 0 run box/checked.toml --set check.0.observable=pressure --out checked
+expect_error 1 run box/checked.toml --set check.0.relative_tolerance=0.1 -- check tolerance
+
+# Nothing of all this was written where it should not be.
+expect test ! -e runs/box
+finish

@@ -1,0 +1,235 @@
+#!/usr/bin/env bash
+# A run that was killed, interrupted, lengthened or given other threads ends with the same bits as one that was not.
+source "$(dirname "$0")/lib.sh" "$@"
+
+have_python || { skip 'there is no Python to compare runs with'; finish; }
+have_h5py || skip 'checkpoints and trajectories are not compared: there is no h5py'
+
+cat >same_run.py <<'PYTHON'
+# same_run.py A B [files]: are two runs the same? With "files" also the files they were cut into.
+import filecmp, glob, json, os, sys
+
+a, b = sys.argv[1:3]
+with_files = "files" in sys.argv[3:]
+
+def summary(run):
+    values = json.load(open(f"{run}/summary.json"))
+    for key in ("wall_seconds", "phase_seconds", "threads", "checks", "case"):
+        del values[key]
+    return values
+
+assert summary(a) == summary(b), "summary.json"
+names = sorted(os.path.basename(name) for name in glob.glob(f"{a}/*.csv"))
+assert names == sorted(os.path.basename(name) for name in glob.glob(f"{b}/*.csv")), names
+for name in names:
+    if "anew" in sys.argv[3:] and name.endswith("_series.csv"):
+        continue
+    assert filecmp.cmp(f"{a}/{name}", f"{b}/{name}", shallow=False), name
+try:
+    import h5py
+    import numpy as np
+except ImportError:
+    sys.exit(0)
+
+def arrays(file):
+    found = {}
+    def visit(name, item):
+        if isinstance(item, h5py.Dataset):
+            found[name] = item[()]
+    with h5py.File(file) as f:
+        f.visititems(visit)
+    return found
+
+def same(one, other, name):
+    one, other = np.asarray(one), np.asarray(other)
+    assert one.shape == other.shape and one.dtype == other.dtype, f"{name}: {one.shape} {other.shape}"
+    assert one.tobytes() == other.tobytes(), name
+
+def compare_checkpoints():
+    one, other = arrays(f"{a}/checkpoint.h5"), arrays(f"{b}/checkpoint.h5")
+    assert one.keys() == other.keys(), one.keys() ^ other.keys()
+    for name in one:
+        # Seconds differ; the case names the options of its own part.
+        if name in ("components/run/phase_seconds", "components/run/case"):
+            continue
+        if not with_files and name.startswith("components/output/"):
+            continue
+        if one[name].dtype.kind == "O":
+            assert one[name] == other[name], name
+        else:
+            same(one[name], other[name], name)
+    assert any(name == "components/particles/position" for name in one)
+
+def trajectory(run):
+    frames = {}
+    for file in sorted(glob.glob(f"{run}/trajectory.*.h5")):
+        with h5py.File(file) as f:
+            p = f["particles/all"]
+            for k, step in enumerate(p["position/step"][:]):
+                assert step not in frames, f"{run}: step {step} twice"
+                frames[int(step)] = [p[f"{name}/value"][k] for name in ("position", "image", "velocity")]
+    return frames
+
+compare_checkpoints()
+one, other = trajectory(a), trajectory(b)
+if "anew" not in sys.argv[3:]:
+    assert one.keys() == other.keys(), sorted(one.keys() ^ other.keys())
+for step in one.keys() & other.keys():
+    for k in range(3):
+        same(one[step][k], other[step][k], f"trajectory at step {step}")
+PYTHON
+same_run() { expect "$python" same_run.py "$@"; }
+
+write_walled channel
+cat >>channel/case.toml <<'CASE'
+
+[output]
+checkpoint_every = 10
+trajectory_every = 7
+vtk_every = 100
+pictures = false
+
+[neighbours]
+reorder_every = 15
+
+[[observe]]
+kind = "thermo"
+every = 3
+series = true
+
+[[observe]]
+kind = "msd"
+window = 0.2
+every = 1
+
+[[observe]]
+kind = "rdf"
+
+[[observe]]
+kind = "profile"
+fit = "linear"
+series = true
+
+[[observe]]
+kind = "density-residual"
+CASE
+sed -i 's/^duration = .*/duration = 1.45/' channel/case.toml # 300 steps
+run() { "$odpd" run "$@"; }
+
+expect_exit 0 run channel --out whole
+expect_exit 0 run channel --out twin
+same_run whole twin files
+
+# signalled SIGNAL DELAY DIRECTORY: a run that gets the signal so many seconds after its first checkpoint; leaves its
+# exit code in $code.
+signalled() {
+  "$odpd" run channel --out "$3" >"$out_text" 2>"$err_text" &
+  local pid=$! tries=0
+  until [ -e "$3/checkpoint.h5" ] || [ $((tries += 1)) -gt 3000 ]; do sleep 0.01; done
+  sleep "$2"
+  kill "-$1" "$pid" 2>/dev/null
+  wait "$pid" 2>/dev/null
+  code=$?
+}
+
+# --- killed ---
+hits=0
+for delay in 0.0 0.03 0.09 0.17; do
+  signalled KILL "$delay" "killed$delay" 2>/dev/null
+  # A fast machine may be through before.
+  [ "$code" -eq 0 ] && continue
+  expect test "$code" -eq 137 -a ! -e "killed$delay/summary.json"
+  hits=$((hits + 1))
+  expect_exit 0 run channel --restart "killed$delay/checkpoint.h5"
+  same_run whole "killed$delay" files
+  expect test -z "$(find "killed$delay" -name '.tmp-*')"
+done
+expect test "$hits" -ge 2
+
+# Killed twice, continued from the resolved case.
+signalled KILL 0.02 twice
+"$odpd" run twice --restart twice/checkpoint.h5 >/dev/null 2>&1 &
+pid=$!
+sleep 0.1
+kill -KILL $pid 2>/dev/null
+wait $pid 2>/dev/null
+expect_exit 0 run twice --restart twice/checkpoint.h5
+same_run whole twice files
+
+# --- interrupted ---
+for name in INT TERM; do
+  signalled $name 0.05 "stopped$name"
+  [ "$code" -eq 0 ] && { skip "SIG$name: the run was through before"; continue; }
+  expect test "$code" -eq 130
+  expect_text "$out_text" interrupted
+  expect_exit 0 "$python" -c "
+import json
+s = json.load(open('stopped$name/summary.json'))
+assert s['interrupted'] and not s['finished'] and s['checks'] == [], s"
+  for file in case.toml checkpoint.h5 thermo_series.csv profile.csv msd.csv rdf.csv; do
+    expect test -s "stopped$name/$file"
+  done
+  expect_exit 0 run channel --restart "stopped$name/checkpoint.h5"
+  same_run whole "stopped$name"
+done
+
+# --- lengthened, into the same and into a new directory ---
+expect_exit 0 run channel --set run.duration=0.6 --out part
+cp -r part part_copy
+expect_exit 0 run channel --restart part/checkpoint.h5
+same_run whole part
+expect_exit 0 run channel --restart part_copy/checkpoint.h5 --out moved
+same_run whole moved anew
+expect diff -q part_copy/thermo_series.csv <(head -n "$(wc -l <part_copy/thermo_series.csv)" part/thermo_series.csv)
+expect test "$(wc -l <moved/thermo_series.csv)" -lt "$(wc -l <part/thermo_series.csv)"
+# A finished run has nothing left to do, and says the same again.
+cp -r whole finished
+expect_exit 0 run channel --restart finished/checkpoint.h5
+same_run whole finished files
+# Other solvers, output and checks may follow.
+expect_exit 0 run channel --restart part_copy/checkpoint.h5 --out solved --set solver.name=cholmod \
+  --set output.checkpoint_every=0 --set 'check=[{observable="pressure", expected=50.0, tolerance=100.0}]'
+
+# --- refused, with nothing touched ---
+cp -r part_copy refused
+write_periodic box
+expect_error 1 run channel --restart refused/checkpoint.h5 --set fluid.a=10.0 -- fluid.a 18.5 10
+expect_error 1 run channel --restart refused/checkpoint.h5 --set integrator.dt=0.01 -- integrator.dt
+expect_error 1 run channel --restart refused/checkpoint.h5 --set seed=3 -- seed
+expect_error 1 run channel --restart refused/checkpoint.h5 --set run.equilibrate=1.0 -- run.equilibrate
+expect_error 1 run channel --restart refused/checkpoint.h5 --set wall.1.stiffness=900.0 -- wall.1.stiffness
+expect_error 1 run box --restart refused/checkpoint.h5 -- 'another case'
+expect_error 3 run channel --restart refused/trajectory.0000.h5 -- trajectory.0000.h5 checkpoint
+expect_error 3 run channel --restart refused/missing.h5 -- missing.h5
+expect_error 3 run channel --restart refused/case.toml -- case.toml HDF5
+expect_error 3 run channel --restart refused -- refused
+expect diff -r part_copy refused
+size=$(stat -c %s refused/checkpoint.h5)
+for part in 0 100 $((size / 2)) $((size - 1)); do
+  head -c "$part" part_copy/checkpoint.h5 >refused/checkpoint.h5
+  expect_error 3 run channel --restart refused/checkpoint.h5 -- checkpoint.h5
+done
+cp part_copy/checkpoint.h5 refused/checkpoint.h5
+expect diff -r part_copy refused
+head -n 3 part_copy/thermo_series.csv >refused/thermo_series.csv
+expect_error 3 run channel --restart refused/checkpoint.h5 -- thermo_series.csv
+
+# --- threads: enough particles that they share the work ---
+write_periodic many
+sed -i -e 's/^size = .*/size = [12.0, 12.0]/' -e 's/^duration = .*/duration = 0.1/' many/case.toml
+sed -n '/^\[output\]/,/^$/p' channel/case.toml >>many/case.toml
+expect_exit 0 run many --threads 1 --out one
+expect_exit 0 run many --threads 2 --out two
+same_run one two files
+for threads in '1 2' '2 1'; do
+  read -r before after <<<"$threads"
+  expect_exit 0 run many --threads "$before" --set run.duration=0.05 --out "threads$before$after"
+  expect_exit 0 run many --threads "$after" --restart "threads$before$after/checkpoint.h5"
+  same_run one "threads$before$after"
+done
+for solver in eigen-cg picard; do
+  expect_exit 0 run many --threads 1 --set run.duration=0.02 --set solver.name=$solver --out "$solver-1"
+  expect_exit 0 run many --threads 2 --set run.duration=0.02 --set solver.name=$solver --out "$solver-2"
+  same_run "$solver-1" "$solver-2" files
+done
+finish
