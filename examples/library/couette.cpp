@@ -23,7 +23,8 @@ int main() {
     side = "y+"
     velocity = [2.0, 0.0]
     layers = [{ depth = 0.0, count = 30 }, { depth = 0.5, count = 12 }]
-  )", "couette");
+  )",
+                                                      "couette");
 
   odpd::Scene<2> scene(odpd::read_scene_settings<2>(config));
   odpd::Dynamics<2> dynamics(scene.box(), scene.particles(), scene.model(), scene,

@@ -73,7 +73,8 @@ double BlockAverage::ratio_error(std::span<const RatioTerm> terms) const {
   for (std::size_t k = 0; k < blocks_.size(); k += width_) {
     double sum = 0.0;
     for (const RatioTerm& t : terms) {
-      const double excess = blocks_[k + t.numerator] - ratio(t.numerator, t.denominator) * blocks_[k + t.denominator];
+      const double excess =
+          blocks_[k + t.numerator] - ratio(t.numerator, t.denominator) * blocks_[k + t.denominator];
       sum += t.weight * excess / (mean(t.denominator) * static_cast<double>(block_length_));
     }
     deviation.push_back(sum);
@@ -87,7 +88,8 @@ std::vector<double> BlockAverage::column_means(std::int64_t without_block) const
   for (std::size_t k = 0; k < n; ++k) {
     if (static_cast<std::int64_t>(k) == without_block) continue;
     for (std::size_t c = 0; c < width_; ++c)
-      means[c] += blocks_[k * width_ + c] / static_cast<double>((n - 1) * static_cast<std::size_t>(block_length_));
+      means[c] += blocks_[k * width_ + c] /
+                  static_cast<double>((n - 1) * static_cast<std::size_t>(block_length_));
   }
   return means;
 }
@@ -106,9 +108,10 @@ void BlockAverage::load(const StateReader& in, const std::string& name) {
   blocks_ = in.read_doubles(name + "/blocks");
   if (counts.size() != 3 || total_.size() != width_ || open_.size() != width_ ||
       blocks_.size() % width_ != 0)
-    throw IoError(fmt::format("the checkpoint's averages '{}' do not hold {} columns: it is damaged "
-                              "or of another case",
-                              name, width_));
+    throw IoError(
+        fmt::format("the checkpoint's averages '{}' do not hold {} columns: it is damaged "
+                    "or of another case",
+                    name, width_));
   samples_ = counts[0];
   block_length_ = counts[1];
   in_open_block_ = counts[2];

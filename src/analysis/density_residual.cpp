@@ -35,7 +35,8 @@ double DensityResidual<D>::thesis_residual(std::span<const double> counts) const
 }
 
 template <int D>
-void DensityResidual<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
+void DensityResidual<D>::measure(const Clock&, const Particles<D>& particles,
+                                 const StepRecord<D>& record) {
   const Vec<D> low = scene_.fluid_low();
   const Vec<D> high = scene_.fluid_high();
   std::vector<double> counts(average_.width(), 0.0);
@@ -44,7 +45,8 @@ void DensityResidual<D>::measure(const Clock&, const Particles<D>& particles, co
     std::int64_t bin = 0;
     for (int c = D - 1; c >= 0; --c) {
       const std::int64_t n = bins_[static_cast<std::size_t>(c)];
-      const double x = (record.start.position[i][c] - low[c]) / (high[c] - low[c]) * static_cast<double>(n);
+      const double x =
+          (record.start.position[i][c] - low[c]) / (high[c] - low[c]) * static_cast<double>(n);
       bin = bin * n + std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(x)), 0, n - 1);
     }
     counts[static_cast<std::size_t>(bin)] += 1.0;
@@ -60,7 +62,8 @@ void DensityResidual<D>::add_results(Results& results) const {
   std::vector<double> means(average_.width());
   for (std::size_t b = 0; b < means.size(); ++b) means[b] = average_.mean(b);
   const double thesis = thesis_residual(means);
-  const double error = average_.jackknife_error([this](const std::vector<double>& m) { return thesis_residual(m); });
+  const double error =
+      average_.jackknife_error([this](const std::vector<double>& m) { return thesis_residual(m); });
   const double to_paper = 1.0 / std::sqrt(static_cast<double>(means.size()));
   const std::string& name = this->settings().name;
   results.scalars.push_back({name + ".paper", thesis * to_paper, error * to_paper});

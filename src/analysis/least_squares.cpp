@@ -41,9 +41,10 @@ PolynomialFit fit_polynomial(int degree, std::span<const double> x, std::span<co
                              std::span<const double> error) {
   const auto terms = static_cast<std::size_t>(degree) + 1;
   if (x.size() < terms)
-    throw ConfigError(fmt::format("a fit of degree {} needs at least {} bins, {} lie in its range: widen fit_from/fit_to "
-                                  "or use more bins",
-                                  degree, terms, x.size()));
+    throw ConfigError(fmt::format(
+        "a fit of degree {} needs at least {} bins, {} lie in its range: widen fit_from/fit_to "
+        "or use more bins",
+        degree, terms, x.size()));
   std::vector<std::vector<double>> normal(terms, std::vector<double>(terms, 0.0));
   for (std::size_t k = 0; k < x.size(); ++k)
     for (std::size_t p = 0; p < terms; ++p)
@@ -56,7 +57,8 @@ PolynomialFit fit_polynomial(int degree, std::span<const double> x, std::span<co
   for (std::size_t p = 0; p < terms; ++p)
     for (std::size_t k = 0; k < x.size(); ++k) {
       for (std::size_t q = 0; q < terms; ++q)
-        fit.weight[p][k] += covariance[p][q] * std::pow(x[k], static_cast<double>(q)) / (error[k] * error[k]);
+        fit.weight[p][k] +=
+            covariance[p][q] * std::pow(x[k], static_cast<double>(q)) / (error[k] * error[k]);
       fit.coefficient[p] += fit.weight[p][k] * y[k];
     }
   double chi_square = 0.0;

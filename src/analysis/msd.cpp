@@ -22,7 +22,8 @@ Msd<D>::Msd(ObserverSettings settings, MsdSettings msd, const Scene<D>& scene, d
       curve_(static_cast<std::size_t>(lags_) * species_),
       diffusion_(species_ + 1) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(scene.particles().size()); ++i)
-    if (scene.particles().is_free(i)) population_[static_cast<std::size_t>(scene.particles().species[i])] += 1.0;
+    if (scene.particles().is_free(i))
+      population_[static_cast<std::size_t>(scene.particles().species[i])] += 1.0;
 }
 
 template <int D>
@@ -56,7 +57,8 @@ void Msd<D>::measure(const Clock&, const Particles<D>& particles, const StepReco
     origins_.erase(origins_.begin());
   }
   if (samples_ % spacing_ == 0)
-    origins_.push_back({samples_, std::move(now), std::vector<double>(static_cast<std::size_t>(lags_) * species_)});
+    origins_.push_back({samples_, std::move(now),
+                        std::vector<double>(static_cast<std::size_t>(lags_) * species_)});
   ++samples_;
 }
 
@@ -87,7 +89,8 @@ void Msd<D>::finish(const Origin& origin) {
 template <int D>
 std::vector<std::string> Msd<D>::series_columns() const {
   std::vector<std::string> columns;
-  for (const auto& species : scene_.settings().species) columns.push_back("diffusion_" + species.name);
+  for (const auto& species : scene_.settings().species)
+    columns.push_back("diffusion_" + species.name);
   columns.push_back("diffusion");
   return columns;
 }
@@ -97,25 +100,34 @@ void Msd<D>::add_results(Results& results) const {
   const std::string prefix = this->settings().name == "msd" ? "" : this->settings().name + ".";
   if (diffusion_.samples() == 0) {
     results.scalars.push_back({prefix + "diffusion", std::nan(""), std::nan("")});
-    results.notes.push_back(fmt::format("{}: the measured part is shorter than the window of {}, so no diffusion "
-                                        "coefficient",
-                                        this->settings().name, msd_.window));
+    results.notes.push_back(
+        fmt::format("{}: the measured part is shorter than the window of {}, so no diffusion "
+                    "coefficient",
+                    this->settings().name, msd_.window));
     return;
   }
-  results.scalars.push_back({prefix + "diffusion", diffusion_.mean(species_), diffusion_.standard_error(species_)});
+  results.scalars.push_back(
+      {prefix + "diffusion", diffusion_.mean(species_), diffusion_.standard_error(species_)});
   const auto& species = scene_.settings().species;
   Table table;
   table.columns = {"lag"};
-  Chart chart{.title = "Mean-square displacement", .x_label = "lag", .y_label = "msd / r_c^2", .curves = {}};
-  for (std::int64_t lag = 0; lag < lags_; ++lag) table.rows.push_back({lag_time_ * static_cast<double>(lag + 1)});
+  Chart chart{.title = "Mean-square displacement",
+              .x_label = "lag",
+              .y_label = "msd / r_c^2",
+              .curves = {}};
+  for (std::int64_t lag = 0; lag < lags_; ++lag)
+    table.rows.push_back({lag_time_ * static_cast<double>(lag + 1)});
   for (std::size_t a = 0; a < species_; ++a) {
     if (species_ > 1)
-      results.scalars.push_back({prefix + "diffusion." + species[a].name, diffusion_.mean(a), diffusion_.standard_error(a)});
-    table.columns.insert(table.columns.end(), {"msd_" + species[a].name, "msd_" + species[a].name + "_error"});
+      results.scalars.push_back({prefix + "diffusion." + species[a].name, diffusion_.mean(a),
+                                 diffusion_.standard_error(a)});
+    table.columns.insert(table.columns.end(),
+                         {"msd_" + species[a].name, "msd_" + species[a].name + "_error"});
     Curve curve{.title = species[a].name, .x = {}, .y = {}, .error = {}};
     for (std::size_t lag = 0; lag < static_cast<std::size_t>(lags_); ++lag) {
       const std::size_t column = lag * species_ + a;
-      table.rows[lag].insert(table.rows[lag].end(), {curve_.mean(column), curve_.standard_error(column)});
+      table.rows[lag].insert(table.rows[lag].end(),
+                             {curve_.mean(column), curve_.standard_error(column)});
       curve.x.push_back(table.rows[lag][0]);
       curve.y.push_back(curve_.mean(column));
     }
@@ -151,7 +163,8 @@ void Msd<D>::load(const StateReader& in) {
   for (std::size_t k = 0; k + 1 < samples.size(); ++k) {
     const auto begin = flat.begin() + static_cast<std::ptrdiff_t>(k * stride);
     const auto split = begin + static_cast<std::ptrdiff_t>(stride - msd_size);
-    origins_.push_back({samples[k + 1], {begin, split}, {split, split + static_cast<std::ptrdiff_t>(msd_size)}});
+    origins_.push_back(
+        {samples[k + 1], {begin, split}, {split, split + static_cast<std::ptrdiff_t>(msd_size)}});
   }
   curve_.load(in, "curve");
   diffusion_.load(in, "diffusion");

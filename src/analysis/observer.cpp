@@ -15,7 +15,8 @@ namespace odpd {
 
 namespace {
 
-int read_axis(const Config& config, const std::string& key, int dimension, const std::string& fallback) {
+int read_axis(const Config& config, const std::string& key, int dimension,
+              const std::string& fallback) {
   std::vector<std::string> names;
   for (int c = 0; c < dimension; ++c) names.emplace_back(1, "xyz"[c]);
   return config.choice(key, names, fallback)[0] - 'x';
@@ -30,12 +31,15 @@ std::string default_axis(const Scene<D>& scene) {
 }
 
 template <int D>
-std::unique_ptr<Observer<D>> make_profile(const Config& entry, ObserverSettings settings, const Scene<D>& scene) {
+std::unique_ptr<Observer<D>> make_profile(const Config& entry, ObserverSettings settings,
+                                          const Scene<D>& scene) {
   ProfileSettings p;
   p.axis = read_axis(entry, "axis", D, default_axis(scene));
   p.bins = entry.positive_integer("bins", 20);
   const std::string fit = entry.choice("fit", {"none", "linear", "parabola"}, "none");
-  p.fit = fit == "linear" ? ProfileFit::linear : fit == "parabola" ? ProfileFit::parabola : ProfileFit::none;
+  p.fit = fit == "linear"     ? ProfileFit::linear
+          : fit == "parabola" ? ProfileFit::parabola
+                              : ProfileFit::none;
   p.component = read_axis(entry, "component", D, "x");
   // By default the fit keeps one cutoff clear of the surfaces, where walls order the fluid.
   const double margin = scene.box().is_periodic(p.axis) ? 0.0 : scene.model().cutoff();
@@ -46,7 +50,8 @@ std::unique_ptr<Observer<D>> make_profile(const Config& entry, ObserverSettings 
 }
 
 template <int D>
-std::unique_ptr<Observer<D>> make_residual(const Config& entry, ObserverSettings settings, const Scene<D>& scene) {
+std::unique_ptr<Observer<D>> make_residual(const Config& entry, ObserverSettings settings,
+                                           const Scene<D>& scene) {
   const Vec<D> extent = scene.fluid_high() - scene.fluid_low();
   std::vector<double> fallback;
   for (int c = 0; c < D; ++c) fallback.push_back(std::max(1.0, std::round(extent[c])));
@@ -55,27 +60,31 @@ std::unique_ptr<Observer<D>> make_residual(const Config& entry, ObserverSettings
   std::array<std::int64_t, static_cast<std::size_t>(D)> bins{};
   for (std::size_t c = 0; c < given.size(); ++c) {
     bins[c] = static_cast<std::int64_t>(given[c]);
-    if (bins[c] < 1 || static_cast<double>(bins[c]) != given[c]) entry.fail("bins", "counts must be whole and positive");
+    if (bins[c] < 1 || static_cast<double>(bins[c]) != given[c])
+      entry.fail("bins", "counts must be whole and positive");
   }
   return std::make_unique<DensityResidual<D>>(std::move(settings), bins, scene);
 }
 
 template <int D>
-std::unique_ptr<Observer<D>> make_rdf(const Config& entry, ObserverSettings settings, const Scene<D>& scene) {
+std::unique_ptr<Observer<D>> make_rdf(const Config& entry, ObserverSettings settings,
+                                      const Scene<D>& scene) {
   double most = 4.0 * scene.model().cutoff();
   for (int c = 0; c < D; ++c)
     if (scene.box().is_periodic(c)) most = std::min(most, 0.5 * scene.box().size[c]);
   const double r_max = entry.positive("r_max", std::min(most, 2.0 * scene.model().cutoff()));
   for (int c = 0; c < D; ++c)
     if (scene.box().is_periodic(c) && r_max > 0.5 * scene.box().size[c])
-      entry.fail("r_max", fmt::format("must be at most half the shortest periodic edge of the box, {}",
-                                      0.5 * scene.box().size[c]));
-  return std::make_unique<Rdf<D>>(std::move(settings), r_max, entry.positive_integer("bins", 100), scene);
+      entry.fail("r_max",
+                 fmt::format("must be at most half the shortest periodic edge of the box, {}",
+                             0.5 * scene.box().size[c]));
+  return std::make_unique<Rdf<D>>(std::move(settings), r_max, entry.positive_integer("bins", 100),
+                                  scene);
 }
 
 template <int D>
-std::unique_ptr<Observer<D>> make_msd(const Config& entry, ObserverSettings settings, const Scene<D>& scene,
-                                      const Clock& clock) {
+std::unique_ptr<Observer<D>> make_msd(const Config& entry, ObserverSettings settings,
+                                      const Scene<D>& scene, const Clock& clock) {
   MsdSettings m;
   m.window = entry.positive("window", 3.0);
   m.fit_from = entry.non_negative("fit_from", m.window / 3.0);
@@ -94,7 +103,8 @@ std::unique_ptr<Observer<D>> make_msd(const Config& entry, ObserverSettings sett
   if (fallback.empty()) fallback = names;
   for (const std::string& name : entry.texts("directions", fallback)) {
     const auto at = std::find(names.begin(), names.end(), name);
-    if (at == names.end()) entry.fail("directions", fmt::format("there is no direction '{}'", name));
+    if (at == names.end())
+      entry.fail("directions", fmt::format("there is no direction '{}'", name));
     m.directions.push_back(static_cast<int>(at - names.begin()));
   }
   if (m.directions.empty()) entry.fail("directions", "at least one direction is needed");
@@ -110,8 +120,8 @@ std::int64_t default_every(const std::string& kind, const Clock& clock) {
 }
 
 template <int D>
-std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::string& kind, const Scene<D>& scene,
-                                           const Clock& clock) {
+std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::string& kind,
+                                           const Scene<D>& scene, const Clock& clock) {
   ObserverSettings settings;
   settings.kind = kind;
   settings.name = entry.text("name", kind);
@@ -122,7 +132,8 @@ std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::strin
   if (kind == "density-residual") return make_residual(entry, std::move(settings), scene);
   if (kind == "rdf") return make_rdf(entry, std::move(settings), scene);
   if (kind == "wall-force") {
-    if (scene.settings().walls.empty()) entry.fail("kind", "the scene has no [[wall]] to feel a force");
+    if (scene.settings().walls.empty())
+      entry.fail("kind", "the scene has no [[wall]] to feel a force");
     return std::make_unique<WallForce<D>>(std::move(settings), scene);
   }
   return make_msd(entry, std::move(settings), scene, clock);
@@ -131,19 +142,23 @@ std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::strin
 }  // namespace
 
 template <int D>
-std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config, const Scene<D>& scene,
+std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
+                                                         const Scene<D>& scene,
                                                          const Clock& clock) {
-  const std::vector<std::string> kinds{"thermo", "profile", "density-residual", "rdf", "msd", "wall-force"};
+  const std::vector<std::string> kinds{"thermo", "profile", "density-residual",
+                                       "rdf",    "msd",     "wall-force"};
   std::vector<std::unique_ptr<Observer<D>>> observers;
   const auto have = [&](const std::string& kind) {
-    return std::any_of(observers.begin(), observers.end(), [&](const auto& o) { return o->settings().kind == kind; });
+    return std::any_of(observers.begin(), observers.end(),
+                       [&](const auto& o) { return o->settings().kind == kind; });
   };
   for (const Config& entry : config.tables("observe")) {
     observers.push_back(make_observer(entry, entry.choice("kind", kinds), scene, clock));
     const ObserverSettings& newest = observers.back()->settings();
     for (const char* kind : {"thermo", "msd"})
       if (newest.name == kind && newest.kind != kind)
-        entry.fail("name", fmt::format("the name '{}' belongs to the observers of that kind", kind));
+        entry.fail("name",
+                   fmt::format("the name '{}' belongs to the observers of that kind", kind));
     for (std::size_t k = 0; k + 1 < observers.size(); ++k)
       if (observers[k]->settings().name == observers.back()->settings().name)
         entry.fail("name", fmt::format("two observers are named '{}': give each a name of its own",
@@ -155,7 +170,9 @@ std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config, c
   return observers;
 }
 
-template std::vector<std::unique_ptr<Observer<2>>> make_observers<2>(const Config&, const Scene<2>&, const Clock&);
-template std::vector<std::unique_ptr<Observer<3>>> make_observers<3>(const Config&, const Scene<3>&, const Clock&);
+template std::vector<std::unique_ptr<Observer<2>>> make_observers<2>(const Config&, const Scene<2>&,
+                                                                     const Clock&);
+template std::vector<std::unique_ptr<Observer<3>>> make_observers<3>(const Config&, const Scene<3>&,
+                                                                     const Clock&);
 
 }  // namespace odpd

@@ -28,7 +28,8 @@ std::int64_t Profile<D>::bin_of(const Vec<D>& r) const {
 
 template <int D>
 double Profile<D>::centre(std::size_t bin) const {
-  return low_ + (high_ - low_) * (static_cast<double>(bin) + 0.5) / static_cast<double>(profile_.bins);
+  return low_ +
+         (high_ - low_) * (static_cast<double>(bin) + 0.5) / static_cast<double>(profile_.bins);
 }
 
 template <int D>
@@ -44,7 +45,8 @@ void Profile<D>::measure(const Clock&, const Particles<D>& particles, const Step
     if (const std::int64_t bin = bin_of(middle); bin >= 0) {
       newest_[column(static_cast<std::size_t>(bin), 0)] += 1.0;
       for (int c = 0; c < D; ++c)
-        newest_[column(static_cast<std::size_t>(bin), static_cast<std::size_t>(c) + 1)] += record.v_mid[i][c];
+        newest_[column(static_cast<std::size_t>(bin), static_cast<std::size_t>(c) + 1)] +=
+            record.v_mid[i][c];
     }
     if (const std::int64_t bin = bin_of(record.start.position[i]); bin >= 0) {
       newest_[column(static_cast<std::size_t>(bin), D + 1)] += force_squared[i];
@@ -70,10 +72,12 @@ Table Profile<D>::table() const {
                             average_.standard_error(column(b, 0)) / bin_volume};
     for (std::size_t c = 1; c <= D; ++c) {
       const std::vector<BlockAverage::RatioTerm> term{{1.0, column(b, c), column(b, 0)}};
-      row.insert(row.end(), {average_.ratio(column(b, c), column(b, 0)), average_.ratio_error(term)});
+      row.insert(row.end(),
+                 {average_.ratio(column(b, c), column(b, 0)), average_.ratio_error(term)});
     }
     const std::vector<BlockAverage::RatioTerm> term{{1.0, column(b, D + 1), column(b, D + 2)}};
-    row.insert(row.end(), {average_.ratio(column(b, D + 1), column(b, D + 2)), average_.ratio_error(term)});
+    row.insert(row.end(),
+               {average_.ratio(column(b, D + 1), column(b, D + 2)), average_.ratio_error(term)});
     t.rows.push_back(std::move(row));
   }
   return t;
@@ -85,7 +89,8 @@ void Profile<D>::add_results(Results& results) const {
   const std::string& name = this->settings().name;
   const Table t = table();
   Chart velocity;
-  velocity.title = fmt::format("Velocity v_{} across {}", "xyz"[profile_.component], "xyz"[profile_.axis]);
+  velocity.title =
+      fmt::format("Velocity v_{} across {}", "xyz"[profile_.component], "xyz"[profile_.axis]);
   velocity.x_label = fmt::format("{} / r_c", "xyz"[profile_.axis]);
   velocity.y_label = fmt::format("v_{}", "xyz"[profile_.component]);
   Curve measured{.title = "measured", .x = {}, .y = {}, .error = {}};
@@ -97,7 +102,8 @@ void Profile<D>::add_results(Results& results) const {
   }
   velocity.curves.push_back(std::move(measured));
   if (profile_.fit != ProfileFit::none) add_fit(results, velocity);
-  Chart density{.title = "Number density", .x_label = velocity.x_label, .y_label = "n r_c^d", .curves = {}};
+  Chart density{
+      .title = "Number density", .x_label = velocity.x_label, .y_label = "n r_c^d", .curves = {}};
   Curve n{.title = "measured", .x = {}, .y = {}, .error = {}, .line = true};
   for (const auto& row : t.rows) {
     n.x.push_back(row[0]);
@@ -124,7 +130,8 @@ void Profile<D>::add_fit(Results& results, Chart& chart) const {
     const std::vector<BlockAverage::RatioTerm> term{{1.0, column(b, component), column(b, 0)}};
     const double e = average_.ratio_error(term);
     if (!(e > 0.0)) {
-      results.notes.push_back(fmt::format("{}: too few samples for errors, so no fit: run longer", name));
+      results.notes.push_back(
+          fmt::format("{}: too few samples for errors, so no fit: run longer", name));
       return;
     }
     x.push_back(centre(b) - middle);
@@ -134,7 +141,8 @@ void Profile<D>::add_fit(Results& results, Chart& chart) const {
     density += average_.mean(column(b, 0));
   }
   const PolynomialFit fit = fit_polynomial(degree, x, y, error);
-  density *= static_cast<double>(profile_.bins) / scene_.fluid_volume() / static_cast<double>(x.size());
+  density *=
+      static_cast<double>(profile_.bins) / scene_.fluid_volume() / static_cast<double>(x.size());
   const auto coefficient_error = [&](std::size_t p) {
     std::vector<BlockAverage::RatioTerm> terms = bins;
     for (std::size_t k = 0; k < terms.size(); ++k) terms[k].weight = fit.weight[p][k];
@@ -150,7 +158,11 @@ void Profile<D>::add_fit(Results& results, Chart& chart) const {
   const double h = high_ - low_;
   const double u_low = channel ? scene_.known_velocity(below + 1, 0.0)[profile_.component] : 0.0;
   const double u_high = channel ? scene_.known_velocity(above + 1, 0.0)[profile_.component] : 0.0;
-  Curve line{.title = degree == 1 ? "linear fit" : "parabola fit", .x = {}, .y = {}, .error = {}, .line = true,
+  Curve line{.title = degree == 1 ? "linear fit" : "parabola fit",
+             .x = {},
+             .y = {},
+             .error = {},
+             .line = true,
              .points = false};
   for (int k = 0; k <= 50; ++k) {
     line.x.push_back(low_ + h * k / 50.0);
@@ -163,14 +175,20 @@ void Profile<D>::add_fit(Results& results, Chart& chart) const {
     results.scalars.push_back({name + ".slope", slope, slope_error});
     if (channel && u_high != u_low) {
       const double expected = (u_high - u_low) / h;
-      results.scalars.push_back({name + ".slope_ratio", slope / expected, slope_error / std::abs(expected)});
+      results.scalars.push_back(
+          {name + ".slope_ratio", slope / expected, slope_error / std::abs(expected)});
       results.scalars.push_back({name + ".slip_length", 0.5 * h * (expected / slope - 1.0),
                                  0.5 * h * std::abs(expected / (slope * slope)) * slope_error});
-      results.notes.push_back(fmt::format("{}: H_eff = {} is the distance between the wall surfaces (the layers at depth "
-                                          "0); slope_ratio compares with (U_high - U_low)/H_eff",
-                                          name, h));
-      chart.curves.push_back({.title = "no slip at the surfaces", .x = {low_, high_}, .y = {u_low, u_high}, .error = {},
-                              .line = true, .points = false});
+      results.notes.push_back(fmt::format(
+          "{}: H_eff = {} is the distance between the wall surfaces (the layers at depth "
+          "0); slope_ratio compares with (U_high - U_low)/H_eff",
+          name, h));
+      chart.curves.push_back({.title = "no slip at the surfaces",
+                              .x = {low_, high_},
+                              .y = {u_low, u_high},
+                              .error = {},
+                              .line = true,
+                              .points = false});
     }
     return;
   }
@@ -180,8 +198,10 @@ void Profile<D>::add_fit(Results& results, Chart& chart) const {
   const double f = scene_.settings().body_force[profile_.component];
   if (!channel || f == 0.0) return;
   const double viscosity = density * f / (-2.0 * curvature);
-  results.scalars.push_back({name + ".viscosity", viscosity, std::abs(viscosity / curvature) * curvature_error});
-  const double top = fit.coefficient[0] - fit.coefficient[1] * fit.coefficient[1] / (4.0 * curvature);
+  results.scalars.push_back(
+      {name + ".viscosity", viscosity, std::abs(viscosity / curvature) * curvature_error});
+  const double top =
+      fit.coefficient[0] - fit.coefficient[1] * fit.coefficient[1] / (4.0 * curvature);
   results.scalars.push_back({name + ".maximum", top, coefficient_error(0)});
   const double half_width = std::sqrt((0.5 * (u_low + u_high) - top) / curvature);
   results.scalars.push_back({name + ".slip_length", half_width - 0.5 * h, nan});

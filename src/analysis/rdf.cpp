@@ -26,13 +26,15 @@ Rdf<D>::Rdf(ObserverSettings settings, double r_max, std::int64_t bins, const Sc
       species_(scene.settings().species.size()) {
   std::vector<double> count(species_, 0.0);
   for (std::size_t i = 0; i < static_cast<std::size_t>(scene.particles().size()); ++i)
-    if (scene.particles().is_free(i)) count[static_cast<std::size_t>(scene.particles().species[i])] += 1.0;
+    if (scene.particles().is_free(i))
+      count[static_cast<std::size_t>(scene.particles().species[i])] += 1.0;
   for (std::size_t a = 0; a < species_; ++a)
     for (std::size_t b = a; b < species_; ++b) {
       const double pairs = a == b ? 0.5 * count[a] * (count[a] - 1.0) : count[a] * count[b];
       for (std::size_t k = 0; k < bins_; ++k) {
         const double dr = r_max / static_cast<double>(bins);
-        const double shell = ball<D>(dr * static_cast<double>(k + 1)) - ball<D>(dr * static_cast<double>(k));
+        const double shell =
+            ball<D>(dr * static_cast<double>(k + 1)) - ball<D>(dr * static_cast<double>(k));
         norm_.push_back(pairs > 0.0 ? scene.fluid_volume() / (pairs * shell) : 0.0);
       }
     }
@@ -60,7 +62,8 @@ void Rdf<D>::measure(const Clock&, const Particles<D>& particles, const StepReco
       if (!particles.is_free(j)) continue;
       const double distance = norm(scene_.box().separation(r[i], r[j]));
       const auto bin = static_cast<std::size_t>(distance / r_max_ * static_cast<double>(bins_));
-      if (bin < bins_) newest_[pair_index(particles.species[i], particles.species[j]) * bins_ + bin] += 1.0;
+      if (bin < bins_)
+        newest_[pair_index(particles.species[i], particles.species[j]) * bins_ + bin] += 1.0;
     }
   }
   for (std::size_t k = 0; k < newest_.size(); ++k) newest_[k] *= norm_[k];
@@ -85,15 +88,23 @@ void Rdf<D>::add_results(Results& results) const {
   Table table;
   table.comment = {"r: middle of the bin; standard errors by block averaging"};
   table.columns = {"r"};
-  Chart chart{.title = "Radial distribution function", .x_label = "r / r_c", .y_label = "g(r)", .curves = {}};
+  Chart chart{.title = "Radial distribution function",
+              .x_label = "r / r_c",
+              .y_label = "g(r)",
+              .curves = {}};
   const double dr = r_max_ / static_cast<double>(bins_);
-  for (std::size_t k = 0; k < bins_; ++k) table.rows.push_back({dr * (static_cast<double>(k) + 0.5)});
+  for (std::size_t k = 0; k < bins_; ++k)
+    table.rows.push_back({dr * (static_cast<double>(k) + 0.5)});
   std::size_t column = 0;
   for (std::size_t a = 0; a < species_; ++a)
     for (std::size_t b = a; b < species_; ++b) {
       const std::string pair = species[a].name + "_" + species[b].name;
       table.columns.insert(table.columns.end(), {"g_" + pair, "g_" + pair + "_error"});
-      Curve curve{.title = species[a].name + " - " + species[b].name, .x = {}, .y = {}, .error = {}, .line = true,
+      Curve curve{.title = species[a].name + " - " + species[b].name,
+                  .x = {},
+                  .y = {},
+                  .error = {},
+                  .line = true,
                   .points = false};
       for (std::size_t k = 0; k < bins_; ++k, ++column) {
         const double g = average_.mean(column);

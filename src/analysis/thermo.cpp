@@ -6,8 +6,9 @@
 namespace odpd {
 
 template <int D>
-void configurational_terms(const Scene<D>& scene, const Particles<D>& particles, const Stage<D>& stage,
-                           std::vector<double>& force_squared, std::vector<double>& laplacian, double& wall_energy) {
+void configurational_terms(const Scene<D>& scene, const Particles<D>& particles,
+                           const Stage<D>& stage, std::vector<double>& force_squared,
+                           std::vector<double>& laplacian, double& wall_energy) {
   laplacian.assign(stage.position.size(), 0.0);
   force_squared.assign(stage.position.size(), 0.0);
   add_laplacian(stage.network, laplacian);
@@ -54,17 +55,19 @@ void Thermo<D>::add_results(Results& results) const {
   if (average_.samples() == 0) return;
   // The default observer's names carry no prefix: every run has them.
   const std::string prefix = this->settings().name == "thermo" ? "" : this->settings().name + ".";
-  results.scalars.push_back({prefix + "energy_per_particle", average_.mean(0), average_.standard_error(0)});
+  results.scalars.push_back(
+      {prefix + "energy_per_particle", average_.mean(0), average_.standard_error(0)});
   results.scalars.push_back({prefix + "pressure", average_.mean(1), average_.standard_error(1)});
   const std::vector<BlockAverage::RatioTerm> terms{{1.0, 2, 3}};
   // Without a conservative force this is 0/0: undefined, and written as null.
-  results.scalars.push_back({prefix + "config_temperature", average_.ratio(2, 3), average_.ratio_error(terms)});
+  results.scalars.push_back(
+      {prefix + "config_temperature", average_.ratio(2, 3), average_.ratio_error(terms)});
 }
 
-template void configurational_terms<2>(const Scene<2>&, const Particles<2>&, const Stage<2>&, std::vector<double>&,
-                                       std::vector<double>&, double&);
-template void configurational_terms<3>(const Scene<3>&, const Particles<3>&, const Stage<3>&, std::vector<double>&,
-                                       std::vector<double>&, double&);
+template void configurational_terms<2>(const Scene<2>&, const Particles<2>&, const Stage<2>&,
+                                       std::vector<double>&, std::vector<double>&, double&);
+template void configurational_terms<3>(const Scene<3>&, const Particles<3>&, const Stage<3>&,
+                                       std::vector<double>&, std::vector<double>&, double&);
 template class Thermo<2>;
 template class Thermo<3>;
 

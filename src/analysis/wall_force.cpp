@@ -8,7 +8,9 @@ namespace odpd {
 
 template <int D>
 WallForce<D>::WallForce(ObserverSettings settings, const Scene<D>& scene)
-    : Observer<D>(std::move(settings)), scene_(scene), average_(2 * D * scene.settings().walls.size()) {}
+    : Observer<D>(std::move(settings)),
+      scene_(scene),
+      average_(2 * D * scene.settings().walls.size()) {}
 
 template <int D>
 std::string WallForce<D>::side(std::size_t wall) const {
@@ -46,10 +48,12 @@ void WallForce<D>::add_stage(const Particles<D>& particles, const Stage<D>& stag
 }
 
 template <int D>
-void WallForce<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
+void WallForce<D>::measure(const Clock&, const Particles<D>& particles,
+                           const StepRecord<D>& record) {
   newest_.assign(average_.width(), 0.0);
   std::vector<Vec<D>> noise(record.start.position.size());
-  if (!record.edge_noise.empty()) add_edge_forces<D>(record.start.network, record.edge_noise, noise);
+  if (!record.edge_noise.empty())
+    add_edge_forces<D>(record.start.network, record.edge_noise, noise);
   add_stage(particles, record.start, noise, record.has_corrector ? 0.5 : 1.0);
   if (record.has_corrector) add_stage(particles, record.corrector, noise, 0.5);
   const auto& settings = scene_.settings();
@@ -68,7 +72,8 @@ std::vector<std::string> WallForce<D>::series_columns() const {
   std::vector<std::string> columns;
   for (const char* what : {"", "shear_"})
     for (std::size_t w = 0; w < scene_.settings().walls.size(); ++w)
-      for (int c = 0; c < D; ++c) columns.push_back(fmt::format("{}{}_{}", what, side(w), "xyz"[c]));
+      for (int c = 0; c < D; ++c)
+        columns.push_back(fmt::format("{}{}_{}", what, side(w), "xyz"[c]));
   return columns;
 }
 
@@ -79,16 +84,16 @@ void WallForce<D>::add_results(Results& results) const {
   const std::string& name = this->settings().name;
   for (std::size_t w = 0; w < settings.walls.size(); ++w)
     for (std::size_t c = 0; c < D; ++c)
-      results.scalars.push_back({fmt::format("{}.{}.{}", name, side(w), "xyz"[c]), average_.mean(w * D + c),
-                                 average_.standard_error(w * D + c)});
+      results.scalars.push_back({fmt::format("{}.{}.{}", name, side(w), "xyz"[c]),
+                                 average_.mean(w * D + c), average_.standard_error(w * D + c)});
   for (std::size_t w = 0; w < settings.walls.size(); ++w) {
     const auto& wall = settings.walls[w];
     if (wall.high || settings.wall_at(wall.axis, true) < 0) continue;
     for (int c = 0; c < D; ++c) {
       if (c == wall.axis) continue;
       const std::size_t column = (settings.walls.size() + w) * D + static_cast<std::size_t>(c);
-      results.scalars.push_back(
-          {fmt::format("{}.shear_stress.{}", name, "xyz"[c]), average_.mean(column), average_.standard_error(column)});
+      results.scalars.push_back({fmt::format("{}.shear_stress.{}", name, "xyz"[c]),
+                                 average_.mean(column), average_.standard_error(column)});
     }
   }
 }

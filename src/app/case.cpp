@@ -17,7 +17,8 @@ namespace {
 
 std::int64_t steps_of(const Config& run, const std::string& key, double time, double dt) {
   const double steps = time / dt;
-  if (steps > 1e15) run.fail(key, "that is more than 1e15 steps: shorten it or enlarge integrator.dt");
+  if (steps > 1e15)
+    run.fail(key, "that is more than 1e15 steps: shorten it or enlarge integrator.dt");
   return std::llround(steps);
 }
 
@@ -34,8 +35,9 @@ SolverOptions read_solver(const Config& config, bool& hold_centre_of_mass) {
   const bool scheme_2 = options.name == "picard-deflated";
   hold_centre_of_mass = config.boolean("hold_centre_of_mass", scheme_2);
   if (scheme_2 && !hold_centre_of_mass)
-    config.fail("hold_centre_of_mass", "picard-deflated (Scheme 2) holds the centre of mass still by construction: leave "
-                                       "this key out, or choose another solver");
+    config.fail("hold_centre_of_mass",
+                "picard-deflated (Scheme 2) holds the centre of mass still by construction: leave "
+                "this key out, or choose another solver");
   return options;
 }
 
@@ -68,25 +70,31 @@ std::vector<CheckSettings> read_checks(const Config& config) {
                             ? entry.non_negative("tolerance")
                             : entry.positive("relative_tolerance") * std::abs(check.expected);
     }
-    if (entry.has("standard_error_below")) check.standard_error_below = entry.positive("standard_error_below");
+    if (entry.has("standard_error_below"))
+      check.standard_error_below = entry.positive("standard_error_below");
     checks.push_back(std::move(check));
   }
   return checks;
 }
 
-double parse_number(const std::string& file, std::int64_t line, const std::string& column, const std::string& text) {
+double parse_number(const std::string& file, std::int64_t line, const std::string& column,
+                    const std::string& text) {
   double value = 0.0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (status != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
-    throw ConfigError(fmt::format("{}:{}: column '{}': '{}' is not a finite number", file, line, column, text));
+    throw ConfigError(
+        fmt::format("{}:{}: column '{}': '{}' is not a finite number", file, line, column, text));
   return value;
 }
 
 template <int D>
-std::int32_t named_species(const SceneSettings<D>& scene, const std::string& name, const std::string& where) {
+std::int32_t named_species(const SceneSettings<D>& scene, const std::string& name,
+                           const std::string& where) {
   for (std::size_t k = 0; k < scene.species.size(); ++k)
-    if (scene.species[k].name == name || std::to_string(k) == name) return static_cast<std::int32_t>(k);
-  throw ConfigError(fmt::format("{}: species '{}' is not one of the case's [[species]]; add it there", where, name));
+    if (scene.species[k].name == name || std::to_string(k) == name)
+      return static_cast<std::int32_t>(k);
+  throw ConfigError(fmt::format(
+      "{}: species '{}' is not one of the case's [[species]]; add it there", where, name));
 }
 
 template <int D>
@@ -99,16 +107,19 @@ void read_start_csv(SceneSettings<D>& scene) {
   const std::size_t species = column("species");
   for (int c = 0; c < D; ++c)
     if (column({"xyz"[c]}) == table.columns.size())
-      throw ConfigError(fmt::format("{}: there is no column '{}': a start file needs x, y{} and, if wanted, species",
-                                    scene.start_file, "xyz"[c], D > 2 ? ", z" : ""));
+      throw ConfigError(fmt::format(
+          "{}: there is no column '{}': a start file needs x, y{} and, if wanted, species",
+          scene.start_file, "xyz"[c], D > 2 ? ", z" : ""));
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     Vec<D> r;
     for (int c = 0; c < D; ++c)
-      r[c] = parse_number(scene.start_file, table.line[row], {"xyz"[c]}, table.rows[row][column({"xyz"[c]})]);
+      r[c] = parse_number(scene.start_file, table.line[row], {"xyz"[c]},
+                          table.rows[row][column({"xyz"[c]})]);
     scene.start_positions.push_back(r);
     if (species < table.columns.size())
-      scene.start_species.push_back(named_species(scene, table.rows[row][species],
-                                                  fmt::format("{}:{}", scene.start_file, table.line[row])));
+      scene.start_species.push_back(
+          named_species(scene, table.rows[row][species],
+                        fmt::format("{}:{}", scene.start_file, table.line[row])));
   }
 }
 
@@ -116,8 +127,9 @@ template <int D>
 void read_start_h5md(SceneSettings<D>& scene) {
   const Frame frame = read_h5md(scene.start_file);
   if (frame.dimension != D)
-    throw ConfigError(fmt::format("{} holds positions in {} dimensions, the case has dimension = {}", scene.start_file,
-                                  frame.dimension, D));
+    throw ConfigError(
+        fmt::format("{} holds positions in {} dimensions, the case has dimension = {}",
+                    scene.start_file, frame.dimension, D));
   const std::size_t n = frame.position.size() / D;
   for (std::size_t k = 0; k < n; ++k) {
     // The walls of an odpd trajectory are placed by the case itself.
@@ -127,7 +139,8 @@ void read_start_h5md(SceneSettings<D>& scene) {
     scene.start_positions.push_back(r);
     if (k >= frame.species.size()) continue;
     const auto index = static_cast<std::size_t>(frame.species[k]);
-    const std::string name = index < frame.species_names.size() ? frame.species_names[index] : std::to_string(index);
+    const std::string name =
+        index < frame.species_names.size() ? frame.species_names[index] : std::to_string(index);
     scene.start_species.push_back(named_species(scene, name, scene.start_file));
   }
 }
@@ -161,7 +174,8 @@ CaseSettings read_case(const Config& config, const std::string& name) {
   c.dynamics.skin = neighbours.non_negative("skin", c.dynamics.skin);
   c.dynamics.reorder_every = interval(neighbours, "reorder_every", c.dynamics.reorder_every);
   const Config run = config.table("run");
-  c.clock.equilibration_steps = steps_of(run, "equilibrate", run.non_negative("equilibrate", 0.0), c.clock.dt);
+  c.clock.equilibration_steps =
+      steps_of(run, "equilibrate", run.non_negative("equilibrate", 0.0), c.clock.dt);
   const std::int64_t measured = steps_of(run, "duration", run.positive("duration"), c.clock.dt);
   if (measured < 1) run.fail("duration", "is shorter than one time step (integrator.dt)");
   c.clock.total_steps = c.clock.equilibration_steps + measured;
@@ -183,7 +197,8 @@ void read_start_file(SceneSettings<D>& scene) {
   } else if (extension == ".h5" || extension == ".h5md" || extension == ".hdf5") {
     read_start_h5md(scene);
   } else {
-    throw ConfigError(fmt::format("{}: start files are CSV (.csv) or H5MD (.h5, .h5md)", scene.start_file));
+    throw ConfigError(
+        fmt::format("{}: start files are CSV (.csv) or H5MD (.h5, .h5md)", scene.start_file));
   }
   if (scene.start_positions.empty())
     throw ConfigError(fmt::format("{}: there are no fluid particles in it", scene.start_file));
@@ -198,7 +213,9 @@ std::string portable_case(const Config& config) {
     if (letter == '"' || letter == '\\') quoted += '\\';
     quoted += letter;
   }
-  return Config::from_text(config.resolved(), "case.toml", {fmt::format("start.file=\"{}\"", quoted)}).resolved();
+  return Config::from_text(config.resolved(), "case.toml",
+                           {fmt::format("start.file=\"{}\"", quoted)})
+      .resolved();
 }
 
 std::vector<std::pair<std::string, std::string>> fixed_values(const Config& config) {
@@ -206,7 +223,8 @@ std::vector<std::pair<std::string, std::string>> fixed_values(const Config& conf
   for (const auto& value : config.flattened()) {
     const std::string& path = value.first;
     const auto in = [&](std::string_view table) { return path.rfind(table, 0) == 0; };
-    if (path == "title" || path == "run.duration" || path == "start.file" || path == "check") continue;
+    if (path == "title" || path == "run.duration" || path == "start.file" || path == "check")
+      continue;
     if (in("solver.") || in("output.") || in("check.")) continue;
     values.push_back(value);
   }

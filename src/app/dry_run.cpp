@@ -1,6 +1,5 @@
 #include "odpd/app/dry_run.h"
 
-
 #include <fmt/format.h>
 
 #include "odpd/core/parallel.h"
@@ -16,10 +15,13 @@ std::string modelled(const Simulation<D>& simulation) {
     return fmt::format("  {} {:<22} {}\n", yes ? "+" : "-", what, why);
   };
   std::string out = "Modelled (+) and left out (-)\n";
-  out += line(scene.model().conservative(), "conservative force", scene.model().conservative() ? "a > 0" : "a = 0");
-  out += line(scene.model().thermal(), "random force", scene.model().thermal() ? "kT > 0" : "kT = 0");
+  out += line(scene.model().conservative(), "conservative force",
+              scene.model().conservative() ? "a > 0" : "a = 0");
+  out +=
+      line(scene.model().thermal(), "random force", scene.model().thermal() ? "kT > 0" : "kT = 0");
   out += line(false, "inertia", "mass = 0: every step is a balance of forces");
-  out += line(!scene.settings().walls.empty(), "walls", fmt::format("{} [[wall]]", scene.settings().walls.size()));
+  out += line(!scene.settings().walls.empty(), "walls",
+              fmt::format("{} [[wall]]", scene.settings().walls.size()));
   const Vec<D>& f = scene.settings().body_force;
   out += line(dot(f, f) > 0.0, "body force", dot(f, f) > 0.0 ? "[body_force]" : "none given");
   out += line(simulation.integrator().stages() > 1, "second solve per step",
@@ -48,18 +50,26 @@ std::string dry_run_text(Simulation<D>& simulation) {
 
   const std::int64_t free = particles.free_count();
   // Two stages of edges, the operator's rows (both directions) and the solver's own memory.
-  const std::int64_t rows = 2 * stage.network.size() * static_cast<std::int64_t>((D + 3) * sizeof(double));
+  const std::int64_t rows =
+      2 * stage.network.size() * static_cast<std::int64_t>((D + 3) * sizeof(double));
   const double mebibytes =
-      static_cast<double>(2 * stage.network.bytes() + rows + stage.report.memory_bytes) / (1024.0 * 1024.0);
-  std::string out = fmt::format("{}\n  {}D, {} free particles, {} of known velocity, {} edges ({:.1f} per particle)\n",
-                                simulation.settings().title, D, free, particles.size() - free, stage.network.size(),
-                                2.0 * static_cast<double>(stage.network.size()) / static_cast<double>(particles.size()));
-  out += fmt::format("  {} steps of dt = {} ({} of them equilibration), solver {}: {} iterations in a first solve\n",
-                     clock.total_steps, clock.dt, clock.equilibration_steps, simulation.settings().solver.name,
-                     stage.report.iterations);
-  out += fmt::format("  about {:.1f} MiB, about {:.3g} s at {:.3g} ms per stage (measured once, on {} thread(s))\n\n",
-                     mebibytes, stage_seconds * simulation.integrator().stages() * static_cast<double>(clock.total_steps),
-                     1e3 * stage_seconds, threads());
+      static_cast<double>(2 * stage.network.bytes() + rows + stage.report.memory_bytes) /
+      (1024.0 * 1024.0);
+  std::string out = fmt::format(
+      "{}\n  {}D, {} free particles, {} of known velocity, {} edges ({:.1f} per particle)\n",
+      simulation.settings().title, D, free, particles.size() - free, stage.network.size(),
+      2.0 * static_cast<double>(stage.network.size()) / static_cast<double>(particles.size()));
+  out += fmt::format(
+      "  {} steps of dt = {} ({} of them equilibration), solver {}: {} iterations in a first "
+      "solve\n",
+      clock.total_steps, clock.dt, clock.equilibration_steps, simulation.settings().solver.name,
+      stage.report.iterations);
+  out += fmt::format(
+      "  about {:.1f} MiB, about {:.3g} s at {:.3g} ms per stage (measured once, on {} "
+      "thread(s))\n\n",
+      mebibytes,
+      stage_seconds * simulation.integrator().stages() * static_cast<double>(clock.total_steps),
+      1e3 * stage_seconds, threads());
   return out + modelled(simulation);
 }
 

@@ -23,7 +23,8 @@ std::string processor() {
 }
 
 double memory_gibibytes() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE)) / 1073741824.0;
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
+         static_cast<double>(sysconf(_SC_PAGE_SIZE)) / 1073741824.0;
 }
 
 }  // namespace
@@ -32,12 +33,13 @@ std::string info_text() {
   std::string out = fmt::format("odpd {}\n", ODPD_VERSION);
   out += fmt::format("  build         {} with {}, PETSc {}\n", ODPD_BUILD_TYPE, ODPD_COMPILER,
                      ODPD_WITH_PETSC ? "on" : "off");
-  out += fmt::format("  instructions  {}, no fused multiply-add\n",
-                     ODPD_NATIVE ? "those of the machine it was compiled on (-march=native)" : "x86-64 baseline");
+  out += fmt::format(
+      "  instructions  {}, no fused multiply-add\n",
+      ODPD_NATIVE ? "those of the machine it was compiled on (-march=native)" : "x86-64 baseline");
   out += fmt::format("  solvers       {}\n", fmt::join(available_solvers(), ", "));
   out += fmt::format("  integrators   {}\n", fmt::join(integrator_names(), ", "));
-  out += fmt::format("  machine       {}, {} processors, {:.1f} GiB\n", processor(), omp_get_num_procs(),
-                     memory_gibibytes());
+  out += fmt::format("  machine       {}, {} processors, {:.1f} GiB\n", processor(),
+                     omp_get_num_procs(), memory_gibibytes());
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "odpd/app/compare.h"
@@ -18,25 +19,31 @@
 namespace {
 
 constexpr const char* exit_codes =
-    "Exit codes: 0 ok, 1 case or usage, 2 solver or physics, 3 files, 4 a check failed, 130 interrupted.\n"
+    "Exit codes: 0 ok, 1 case or usage, 2 solver or physics, 3 files, 4 a check failed, 130 "
+    "interrupted.\n"
     "Start with: odpd run cases/01_couette      Every key of a case file: docs/case-file.md";
 
-void add_case(CLI::App& command, std::filesystem::path& path, std::vector<std::string>& overrides) {
+void add_case(CLI::App& command, std::filesystem::path& path, std::vector<std::string>& overrides,
+              bool& quiet) {
   command.add_option("case", path, "directory that holds case.toml, or a .toml file")->required();
   // One value each time, so that a case may follow.
   command
       .add_option("--set", overrides,
-                  "key=value overrides a key of the case, as in --set integrator.dt=0.01; values are TOML, a bare word is "
+                  "key=value overrides a key of the case, as in --set integrator.dt=0.01; values "
+                  "are TOML, a bare word is "
                   "a string; may be repeated")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_flag("--quiet", quiet, "as before the command");
 }
 
 // What is wrong with the command line, in one line.
 std::string usage_error(const CLI::App& app, const std::string& reason) {
-  if (!app.get_subcommands().empty()) return reason + "; see odpd " + app.get_subcommands().front()->get_name() + " --help";
+  if (!app.get_subcommands().empty())
+    return reason + "; see odpd " + app.get_subcommands().front()->get_name() + " --help";
   const std::vector<std::string> words = app.remaining();
-  const auto word = std::find_if(words.begin(), words.end(), [](const auto& w) { return w.rfind('-', 0) != 0; });
+  const auto word =
+      std::find_if(words.begin(), words.end(), [](const auto& w) { return w.rfind('-', 0) != 0; });
   if (word == words.end()) return "a command is needed: run, compare, info; see odpd --help";
   return "there is no command '" + *word + "', only run, compare, info; see odpd --help";
 }
@@ -51,31 +58,42 @@ int command_line(int argc, char** argv) {
 
   odpd::RunOptions run;
   CLI::App* run_command = app.add_subcommand("run", "run a case and check its results");
-  add_case(*run_command, run.case_path, run.overrides);
-  run_command->add_option("--out", run.out,
-                          "output directory [runs/<case>]; an earlier run there is moved aside to <dir>.N");
-  run_command->add_option("--threads", run.threads, "threads; 0 chooses by the number of particles; never changes results")
+  add_case(*run_command, run.case_path, run.overrides, quiet);
+  run_command->add_option(
+      "--out", run.out,
+      "output directory [runs/<case>]; an earlier run there is moved aside to <dir>.N");
+  run_command
+      ->add_option("--threads", run.threads,
+                   "threads; 0 chooses by the number of particles; never changes results")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
-  run_command->add_option("--restart", run.restart,
-                          "checkpoint.h5 to continue from: into its own directory (default) or, with --out, a new one");
-  run_command->add_flag("--dry-run", run.dry_run, "print what would be modelled, its size and an estimate of the time");
+  run_command->add_option(
+      "--restart", run.restart,
+      "checkpoint.h5 to continue from: into its own directory (default) or, with --out, a new one");
+  run_command->add_flag("--dry-run", run.dry_run,
+                        "print what would be modelled, its size and an estimate of the time");
 
   odpd::CompareOptions compare;
-  CLI::App* compare_command =
-      app.add_subcommand("compare", "solve one frozen step of a case with every backend: iterations, error, seconds");
-  add_case(*compare_command, compare.case_path, compare.overrides);
-  compare_command->add_option("--solvers", compare.solvers, "names, separated by commas [all of this build]")
+  CLI::App* compare_command = app.add_subcommand(
+      "compare", "solve one frozen step of a case with every backend: iterations, error, seconds");
+  add_case(*compare_command, compare.case_path, compare.overrides, quiet);
+  compare_command
+      ->add_option("--solvers", compare.solvers, "names, separated by commas [all of this build]")
       ->delimiter(',');
-  compare_command->add_option("--tolerance", compare.tolerances, "tolerances, separated by commas [1e-2 to 1e-10]")
+  compare_command
+      ->add_option("--tolerance", compare.tolerances,
+                   "tolerances, separated by commas [1e-2 to 1e-10]")
       ->delimiter(',')
       ->check(CLI::Range(1e-16, 1.0));
   std::string stopping = "residual";
-  compare_command->add_option("--stopping", stopping,
-                              "when the Picard schemes stop: residual, or increment (the overdamped paper's eq. 27)")
+  compare_command
+      ->add_option(
+          "--stopping", stopping,
+          "when the Picard schemes stop: residual, or increment (the overdamped paper's eq. 27)")
       ->check(CLI::IsMember({"residual", "increment"}))
       ->capture_default_str();
-  compare_command->add_option("--steps", compare.steps, "steps of the case before its configuration is frozen")
+  compare_command
+      ->add_option("--steps", compare.steps, "steps of the case before its configuration is frozen")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1000000000}))
       ->capture_default_str();
   compare_command->add_option("--out", compare.out, "output directory [runs/<case>-compare]");
@@ -83,7 +101,8 @@ int command_line(int argc, char** argv) {
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
 
-  CLI::App* info_command = app.add_subcommand("info", "version, build options, backends and machine");
+  CLI::App* info_command =
+      app.add_subcommand("info", "version, build options, backends and machine");
 
   try {
     app.parse(argc, argv);
@@ -100,17 +119,33 @@ int command_line(int argc, char** argv) {
   return 0;
 }
 
+// What was printed must have arrived, on a full disk too.
+void require_printed() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  throw odpd::IoError(
+      "standard output cannot be written: free some space, or send it elsewhere; the files of a "
+      "run "
+      "are complete");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    return command_line(argc, argv);
+    const int code = command_line(argc, argv);
+    require_printed();
+    return code;
   } catch (const odpd::Error& e) {
     std::fprintf(stderr, "odpd: error: %s\n", e.what());
     return e.exit_code();
   } catch (const std::bad_alloc&) {
-    std::fputs("odpd: error: not enough memory for this case; odpd run --dry-run tells what it needs\n", stderr);
+    std::fputs(
+        "odpd: error: not enough memory for this case; odpd run --dry-run tells what it needs\n",
+        stderr);
     return 2;
+  } catch (const std::system_error& e) {
+    std::fprintf(stderr, "odpd: error: %s; check the files and directories involved\n", e.what());
+    return 3;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "odpd: error: %s\n", e.what());
     return 2;

@@ -41,7 +41,9 @@ JsonObject solver_json(const Simulation<D>& simulation) {
   json.set("name", options.name).set("tolerance", options.tolerance).set("problem", s.problem);
   json.set("stopping", options.stopping == Stopping::increment ? "increment" : "residual");
   json.set("holds_centre_of_mass", simulation.settings().dynamics.hold_centre_of_mass);
-  json.set("solves", s.solves).set("iterations", s.iterations).set("most_iterations", s.most_iterations);
+  json.set("solves", s.solves)
+      .set("iterations", s.iterations)
+      .set("most_iterations", s.most_iterations);
   json.set("iterations_per_solve", static_cast<double>(s.iterations) / solves);
   json.set("worst_residual", s.worst_residual);
   return json;
@@ -51,8 +53,12 @@ std::vector<JsonObject> checks_json(const std::vector<CheckOutcome>& checks) {
   std::vector<JsonObject> list;
   for (const CheckOutcome& c : checks) {
     JsonObject json;
-    json.set("name", c.check.name).set("observable", c.check.observable).set("expected", c.check.expected);
-    json.set("measured", c.measured).set("stderr", c.standard_error).set("tolerance", c.check.tolerance);
+    json.set("name", c.check.name)
+        .set("observable", c.check.observable)
+        .set("expected", c.check.expected);
+    json.set("measured", c.measured)
+        .set("stderr", c.standard_error)
+        .set("tolerance", c.check.tolerance);
     json.set("passed", c.passed).set("source", c.check.source);
     if (!c.passed) json.set("why", c.why);
     list.push_back(json);
@@ -62,8 +68,8 @@ std::vector<JsonObject> checks_json(const std::vector<CheckOutcome>& checks) {
 
 }  // namespace
 
-std::vector<CheckOutcome> evaluate_checks(const std::vector<CheckSettings>& checks, const Results& results,
-                                          std::int64_t alarm_crossings) {
+std::vector<CheckOutcome> evaluate_checks(const std::vector<CheckSettings>& checks,
+                                          const Results& results, std::int64_t alarm_crossings) {
   std::vector<CheckOutcome> outcomes;
   for (const CheckSettings& check : checks) {
     const Scalar* scalar = results.find(check.observable);
@@ -77,12 +83,15 @@ std::vector<CheckOutcome> evaluate_checks(const std::vector<CheckSettings>& chec
     }
     CheckOutcome o{check, scalar->mean, scalar->standard_error, false, {}};
     if (alarm_crossings > 0 && check.observable != "alarm_crossings") {
-      o.why = fmt::format("{} particle(s) were caught by the mirror behind a wall while this was measured",
-                          alarm_crossings);
+      o.why = fmt::format(
+          "{} particle(s) were caught by the mirror behind a wall while this was measured",
+          alarm_crossings);
     } else if (!(std::abs(o.measured - check.expected) <= check.tolerance)) {
       o.why = "outside the tolerance";
-    } else if (check.standard_error_below > 0.0 && !(o.standard_error <= check.standard_error_below)) {
-      o.why = fmt::format("the standard error is not below {}: run longer", check.standard_error_below);
+    } else if (check.standard_error_below > 0.0 &&
+               !(o.standard_error <= check.standard_error_below)) {
+      o.why =
+          fmt::format("the standard error is not below {}: run longer", check.standard_error_below);
     }
     o.passed = o.why.empty();
     outcomes.push_back(std::move(o));
@@ -94,7 +103,8 @@ std::string with_error(double value, double standard_error) {
   if (!std::isfinite(value)) return "undefined";
   if (!(standard_error > 0.0)) return fmt::format("{:.6g}", value);
   // Two digits of the error, and the value to the same place.
-  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(standard_error))), 0, 12);
+  const int decimals =
+      std::clamp(1 - static_cast<int>(std::floor(std::log10(standard_error))), 0, 12);
   return fmt::format("{:.{}f} +- {:.{}f}", value, decimals, standard_error, decimals);
 }
 
@@ -110,9 +120,14 @@ std::string summary_json(const Simulation<D>& simulation, const Results& results
   json.set("case", settings.name).set("title", settings.title).set("version", ODPD_VERSION);
   json.set("dimension", D).set("seed", static_cast<std::int64_t>(settings.dynamics.seed));
   json.set("integrator", settings.integrator).set("dt", clock.dt);
-  json.set("particles", simulation.scene().particles().size()).set("free_particles", free_particles(simulation));
-  json.set("steps", clock.step).set("equilibration_steps", clock.equilibration_steps).set("time", clock.time());
-  json.set("finished", clock.finished()).set("interrupted", facts.interrupted).set("threads", facts.threads);
+  json.set("particles", simulation.scene().particles().size())
+      .set("free_particles", free_particles(simulation));
+  json.set("steps", clock.step)
+      .set("equilibration_steps", clock.equilibration_steps)
+      .set("time", clock.time());
+  json.set("finished", clock.finished())
+      .set("interrupted", facts.interrupted)
+      .set("threads", facts.threads);
   json.set("wall_seconds", facts.wall_seconds);
   json.set("phase_seconds", phases_json(simulation.dynamics().phases()));
   json.set("solver", solver_json(simulation));
@@ -131,41 +146,46 @@ std::string report_text(const Simulation<D>& simulation, const Results& results,
   const Clock& clock = simulation.clock();
   const SolverStatistics& s = simulation.dynamics().statistics();
   std::string out = fmt::format("\n{}\n", settings.title);
-  out += fmt::format("  {}D, {} free particles and {} of known velocity; {} at dt = {}, {} steps (t = {:.6g}){}\n", D,
-                     free_particles(simulation), simulation.scene().particles().size() - free_particles(simulation),
-                     settings.integrator, clock.dt, clock.step, clock.time(),
-                     facts.interrupted ? ", interrupted" : "");
-  out += fmt::format("  solver {} to {:g}: {:.1f} iterations per solve (most {}), worst true residual {:.2g}\n",
-                     settings.solver.name, settings.solver.tolerance,
-                     static_cast<double>(s.iterations) / static_cast<double>(std::max<std::int64_t>(s.solves, 1)),
-                     s.most_iterations, s.worst_residual);
+  out += fmt::format(
+      "  {}D, {} free particles and {} of known velocity; {} at dt = {}, {} steps (t = {:.6g}){}\n",
+      D, free_particles(simulation),
+      simulation.scene().particles().size() - free_particles(simulation), settings.integrator,
+      clock.dt, clock.step, clock.time(), facts.interrupted ? ", interrupted" : "");
+  out += fmt::format(
+      "  solver {} to {:g}: {:.1f} iterations per solve (most {}), worst true residual {:.2g}\n",
+      settings.solver.name, settings.solver.tolerance,
+      static_cast<double>(s.iterations) / static_cast<double>(std::max<std::int64_t>(s.solves, 1)),
+      s.most_iterations, s.worst_residual);
   if (!s.problem.empty()) out += fmt::format("  problem solved: {}\n", s.problem);
   out += "\nMeasured (standard error by block averaging)\n";
   for (const Scalar& scalar : results.scalars)
-    out += fmt::format("  {:<34} {}\n", scalar.name, with_error(scalar.mean, scalar.standard_error));
+    out +=
+        fmt::format("  {:<34} {}\n", scalar.name, with_error(scalar.mean, scalar.standard_error));
   for (const std::string& note : results.notes) out += fmt::format("  note: {}\n", note);
   if (!checks.empty()) out += "\nExpected\n";
   for (const CheckOutcome& c : checks)
-    out += fmt::format("  {} {:<28} {:>12.6g}, expected {:.6g} within {:.3g}{}{}\n", c.passed ? "ok    " : "FAILED",
-                       c.check.name, c.measured, c.check.expected, c.check.tolerance,
-                       c.passed ? "" : ": " + c.why, c.check.source.empty() ? "" : "  [" + c.check.source + "]");
+    out += fmt::format("  {} {:<28} {:>12.6g}, expected {:.6g} within {:.3g}{}{}\n",
+                       c.passed ? "ok    " : "FAILED", c.check.name, c.measured, c.check.expected,
+                       c.check.tolerance, c.passed ? "" : ": " + c.why,
+                       c.check.source.empty() ? "" : "  [" + c.check.source + "]");
   const PhaseSeconds& phases = simulation.dynamics().phases();
   const double total = std::max(phase_total(phases), 1e-12);
   out += "\nTime (s)\n ";
   for (std::size_t p = 0; p < phases.seconds.size(); ++p)
-    out += fmt::format(" {} {:.2f} ({:.0f} %){}", phase_name(static_cast<Phase>(p)), phases.seconds[p],
-                       100.0 * phases.seconds[p] / total, p + 1 < phases.seconds.size() ? "," : "\n");
+    out +=
+        fmt::format(" {} {:.2f} ({:.0f} %){}", phase_name(static_cast<Phase>(p)), phases.seconds[p],
+                    100.0 * phases.seconds[p] / total, p + 1 < phases.seconds.size() ? "," : "\n");
   out += fmt::format("  {:.2f} s in this run on {} thread(s)\n", facts.wall_seconds, facts.threads);
   return out;
 }
 
-template std::string summary_json<2>(const Simulation<2>&, const Results&, const std::vector<CheckOutcome>&,
-                                     const RunFacts&);
-template std::string summary_json<3>(const Simulation<3>&, const Results&, const std::vector<CheckOutcome>&,
-                                     const RunFacts&);
-template std::string report_text<2>(const Simulation<2>&, const Results&, const std::vector<CheckOutcome>&,
-                                    const RunFacts&);
-template std::string report_text<3>(const Simulation<3>&, const Results&, const std::vector<CheckOutcome>&,
-                                    const RunFacts&);
+template std::string summary_json<2>(const Simulation<2>&, const Results&,
+                                     const std::vector<CheckOutcome>&, const RunFacts&);
+template std::string summary_json<3>(const Simulation<3>&, const Results&,
+                                     const std::vector<CheckOutcome>&, const RunFacts&);
+template std::string report_text<2>(const Simulation<2>&, const Results&,
+                                    const std::vector<CheckOutcome>&, const RunFacts&);
+template std::string report_text<3>(const Simulation<3>&, const Results&,
+                                    const std::vector<CheckOutcome>&, const RunFacts&);
 
 }  // namespace odpd

@@ -38,11 +38,13 @@ int conclude(const Simulation<D>& simulation, RunOutput<D>& output, const RunFac
   const Results results = simulation.results();
   output.finish(results);
   // An interrupted run has not measured what its checks ask for.
-  const auto checks = facts.interrupted
-                          ? std::vector<CheckOutcome>{}
-                          : evaluate_checks(simulation.settings().checks, results, simulation.alarm_crossings());
-  write_file_atomically(output.directory() / "summary.json", summary_json(simulation, results, checks, facts));
-  fmt::print("{}  files in {}\n", report_text(simulation, results, checks, facts), output.directory().string());
+  const auto checks = facts.interrupted ? std::vector<CheckOutcome>{}
+                                        : evaluate_checks(simulation.settings().checks, results,
+                                                          simulation.alarm_crossings());
+  write_file_atomically(output.directory() / "summary.json",
+                        summary_json(simulation, results, checks, facts));
+  fmt::print("{}  files in {}\n", report_text(simulation, results, checks, facts),
+             output.directory().string());
   std::fflush(stdout);
   if (facts.interrupted) return 130;
   for (const CheckOutcome& c : checks)
@@ -58,7 +60,8 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
     fmt::print("{}", dry_run_text(simulation));
     return 0;
   }
-  if (const std::string warning = simulation.integrator().warning(); !warning.empty()) log_warning(warning);
+  if (const std::string warning = simulation.integrator().warning(); !warning.empty())
+    log_warning(warning);
 
   const fs::path directory = output_directory(options, settings);
   std::optional<CheckpointReader> checkpoint;
@@ -66,7 +69,8 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
     checkpoint.emplace(options.restart);
     simulation.load(*checkpoint);
   }
-  const bool continues = checkpoint && same_directory(directory, fs::absolute(options.restart).parent_path());
+  const bool continues =
+      checkpoint && same_directory(directory, fs::absolute(options.restart).parent_path());
   if (!continues) prepare_run_directory(directory);
   RunOutput<D> output(directory, config, simulation);
   if (continues) {
@@ -98,7 +102,8 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
 int run_case(const RunOptions& options) {
   const Config config = open_case(options.case_path, options.overrides);
   const CaseSettings settings = read_case(config, case_name(options.case_path));
-  return settings.dimension == 2 ? run_in<2>(options, config, settings) : run_in<3>(options, config, settings);
+  return settings.dimension == 2 ? run_in<2>(options, config, settings)
+                                 : run_in<3>(options, config, settings);
 }
 
 }  // namespace odpd

@@ -15,19 +15,24 @@ namespace odpd {
 
 namespace fs = std::filesystem;
 
-void prepare_run_directory(const fs::path& directory) {
+void prepare_run_directory(const fs::path& directory) try {
   if (fs::exists(directory) && !fs::is_directory(directory))
-    throw IoError(fmt::format("{}: a file is where the output directory should be; remove it or choose another --out",
-                              directory.string()));
+    throw IoError(fmt::format(
+        "{}: a file is where the output directory should be; remove it or choose another --out",
+        directory.string()));
   if (fs::exists(directory) && !fs::is_empty(directory)) {
     if (!fs::exists(directory / "case.toml"))
-      throw IoError(fmt::format("{}: the directory is not empty and holds no run of odpd (no case.toml), so it is left "
-                                "alone; choose another --out",
-                                directory.string()));
+      throw IoError(fmt::format(
+          "{}: the directory is not empty and holds no run of odpd (no case.toml), so it is left "
+          "alone; choose another --out",
+          directory.string()));
     const fs::path moved = move_aside(directory);
     log_info(fmt::format("the earlier run was moved to {}", moved.string()));
   }
   make_directory(directory);
+} catch (const fs::filesystem_error& e) {
+  throw IoError(fmt::format("{}: cannot be used for the output: {}; choose another --out",
+                            directory.string(), e.code().message()));
 }
 
 template <int D>
@@ -143,7 +148,8 @@ void RunOutput<D>::finish(const Results& results) {
   for (const auto& [name, table] : results.tables) write_csv(directory_ / (name + ".csv"), table);
   if (!simulation_.settings().output.pictures) return;
   bool drawn = true;
-  for (const auto& [name, chart] : results.charts) drawn = drawn && draw_chart(directory_ / name, chart);
+  for (const auto& [name, chart] : results.charts)
+    drawn = drawn && draw_chart(directory_ / name, chart);
   if (drawn) draw_particles(directory_ / "particles", simulation_.frame(), 0);
 }
 

@@ -25,10 +25,13 @@ std::string difference(const Config& saved, const Config& current) {
   std::map<std::string, std::pair<std::string, std::string>> both;
   for (const auto& [path, value] : before) both[path].first = value;
   for (const auto& [path, value] : now) both[path].second = value;
-  for (const auto& [path, values] : both)
-    if (values.first != values.second)
-      return fmt::format("'{}' was {} and is {}", path, values.first.empty() ? "absent" : values.first,
-                         values.second.empty() ? "absent" : values.second);
+  // Observers come last: their defaults follow from the rest.
+  for (const bool of_observers : {false, true})
+    for (const auto& [path, values] : both)
+      if (values.first != values.second && path.starts_with("observe.") == of_observers)
+        return fmt::format("'{}' was {} and is {}", path,
+                           values.first.empty() ? "absent" : values.first,
+                           values.second.empty() ? "absent" : values.second);
   return {};
 }
 
@@ -40,8 +43,8 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings)
       settings_(std::move(settings)),
       clock_(settings_.clock),
       scene_(scene_of<D>(config)),
-      dynamics_(scene_.box(), scene_.particles(), scene_.model(), scene_, make_solver(settings_.solver),
-                settings_.dynamics),
+      dynamics_(scene_.box(), scene_.particles(), scene_.model(), scene_,
+                make_solver(settings_.solver), settings_.dynamics),
       integrator_(make_integrator<D>(settings_.integrator)),
       observers_(make_observers(config, scene_, clock_)) {
   config.reject_unread();
@@ -59,7 +62,8 @@ const StepRecord<D>& Simulation<D>::step() {
 }
 
 template <int D>
-void Simulation<D>::run(const std::function<bool()>& stop, const std::function<void()>& after_step) {
+void Simulation<D>::run(const std::function<bool()>& stop,
+                        const std::function<void()>& after_step) {
   while (!clock_.finished() && !stop()) {
     step();
     after_step();
@@ -111,6 +115,7 @@ void Simulation<D>::save(CheckpointWriter& out) const {
   const SolverStatistics& s = dynamics_.statistics();
   run.write("solver_counts", std::vector<std::int64_t>{s.solves, s.iterations, s.most_iterations});
   run.write("solver_worst_residual", std::vector<double>{s.worst_residual});
+  run.write_text("solver_problem", s.problem);
   scene_.particles().save(out.component("particles"));
   integrator_->save(out.component("integrator"));
   for (std::size_t k = 0; k < observers_.size(); ++k)
@@ -122,11 +127,17 @@ void Simulation<D>::load(CheckpointReader& in) {
   const StateReader& run = in.component("run");
   const Config saved = Config::from_text(run.read_text("case"), "checkpoint");
   if (const std::string what = difference(saved, config_); !what.empty())
-    throw ConfigError(fmt::format("the checkpoint belongs to another case: {}. A restart may change run.duration, "
-                                  "[solver], [output], [[check]] and the number of threads, nothing else",
-                                  what));
+    throw ConfigError(fmt::format(
+        "the checkpoint belongs to another case: {}. A restart may change run.duration, "
+        "[solver], [output], [[check]] and the number of threads, nothing else",
+        what));
   const std::vector<std::int64_t> counts = run.read_integers("counts");
   clock_.step = counts.at(0);
+  if (clock_.step > clock_.total_steps)
+    throw ConfigError(fmt::format(
+        "the checkpoint is at t = {:.6g}, after the end of this run at t = {:.6g}: raise "
+        "run.duration",
+        clock_.time(), static_cast<double>(clock_.total_steps) * clock_.dt));
   alarm_crossings_ = counts.at(1);
   const std::vector<double> seconds = run.read_doubles("phase_seconds");
   std::copy(seconds.begin(), seconds.end(), dynamics_.phases().seconds.begin());
@@ -136,6 +147,7 @@ void Simulation<D>::load(CheckpointReader& in) {
   s.iterations = solver.at(1);
   s.most_iterations = solver.at(2);
   s.worst_residual = run.read_doubles("solver_worst_residual").at(0);
+  s.problem = run.read_text("solver_problem");
   scene_.particles().load(in.component("particles"));
   dynamics_.particles_replaced();
   integrator_->load(in.component("integrator"));

@@ -37,8 +37,8 @@ double blocked_sum(std::int64_t n, const Term& term) {
 void set_threads(int threads, std::int64_t particles) {
 #ifdef _OPENMP
   const int most = omp_get_num_procs();
-  thread_count = threads > 0 ? threads
-                             : static_cast<int>(std::clamp<std::int64_t>(particles / 4000, 1, most));
+  thread_count =
+      threads > 0 ? threads : static_cast<int>(std::clamp<std::int64_t>(particles / 4000, 1, most));
   omp_set_num_threads(thread_count);
 #else
   (void)threads;

@@ -40,6 +40,12 @@ void Dynamics<D>::reorder_if_due(std::int64_t step) {
 
 template <int D>
 void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage<D>& stage) {
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (!finite(positions[i]))
+      throw SolverError(fmt::format(
+          "the position of particle {} at t = {:.6g} is not finite: continue from the last "
+          "checkpoint, with a smaller integrator.dt",
+          particles_.id[i], time));
   stage.time = time;
   stage.position.assign(positions.begin(), positions.end());
   {
@@ -55,7 +61,8 @@ void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage
   surroundings_.add_driving_forces(particles_, time, stage.driving_force);
   stage.velocity.assign(stage.position.size(), Vec<D>{});
   for (std::size_t i = 0; i < stage.position.size(); ++i)
-    if (!particles_.is_free(i)) stage.velocity[i] = surroundings_.known_velocity(particles_.group[i], time);
+    if (!particles_.is_free(i))
+      stage.velocity[i] = surroundings_.known_velocity(particles_.group[i], time);
 }
 
 template <int D>
@@ -63,8 +70,10 @@ std::vector<double> Dynamics<D>::draw_noise(const Stage<D>& stage, std::int64_t 
                                             std::vector<Vec<D>>& edge_noise) {
   const PhaseTimer timer(phases_, Phase::noise);
   edge_noise.clear();
-  if (!model_.thermal()) return std::vector<double>(static_cast<std::size_t>(dofs().unknowns()), 0.0);
-  draw_edge_noise(stage.network, particles_, settings_.seed, static_cast<std::uint64_t>(step), dt, edge_noise);
+  if (!model_.thermal())
+    return std::vector<double>(static_cast<std::size_t>(dofs().unknowns()), 0.0);
+  draw_edge_noise(stage.network, particles_, settings_.seed, static_cast<std::uint64_t>(step), dt,
+                  edge_noise);
   std::vector<Vec<D>> force(stage.position.size());
   add_edge_forces<D>(stage.network, edge_noise, force);
   std::vector<double> xi;
@@ -77,9 +86,11 @@ std::vector<double> Dynamics<D>::right_hand_side(Stage<D>& stage, const std::vec
   const PhaseTimer timer(phases_, Phase::assembly);
   resistance_.rebuild(stage.network, dofs(), particles_, stage.position, 0.0);
   std::vector<Vec<D>> force(stage.position.size());
-  for (std::size_t i = 0; i < force.size(); ++i) force[i] = stage.potential_force[i] + stage.driving_force[i];
+  for (std::size_t i = 0; i < force.size(); ++i)
+    force[i] = stage.potential_force[i] + stage.driving_force[i];
   // Free particles still have velocity zero here, so this is - R v_known.
-  if (dofs().nodes() < dofs().particles()) add_friction_forces<D>(stage.network, stage.velocity, force);
+  if (dofs().nodes() < dofs().particles())
+    add_friction_forces<D>(stage.network, stage.velocity, force);
   std::vector<double> b;
   dofs().gather(force, b);
   for (std::size_t k = 0; k < b.size(); ++k) b[k] += xi[k];
@@ -99,7 +110,8 @@ void Dynamics<D>::solve(Stage<D>& stage, const std::vector<double>& xi, std::vec
   phases_[Phase::assembly] += report.assembly_seconds;
   phases_[Phase::solve] -= report.assembly_seconds;
   if (!report.converged)
-    throw SolverError(fmt::format("step {}: solver '{}' did not converge: {}", step, solver_->name(), report.failure));
+    throw SolverError(fmt::format("step {}: solver '{}' did not converge: {}", step,
+                                  solver_->name(), report.failure));
   ++statistics_.solves;
   statistics_.iterations += report.iterations;
   statistics_.most_iterations = std::max(statistics_.most_iterations, report.iterations);
@@ -109,12 +121,30 @@ void Dynamics<D>::solve(Stage<D>& stage, const std::vector<double>& xi, std::vec
   dofs().scatter(guess, known, stage.velocity);
   for (std::size_t i = 0; i < stage.velocity.size(); ++i)
     if (!finite(stage.velocity[i]))
-      throw SolverError(fmt::format("step {}: the velocity of particle {} is not finite; reduce integrator.dt", step,
-                                    particles_.id[i]));
+      throw SolverError(
+          fmt::format("step {}: the velocity of particle {} is not finite; reduce integrator.dt",
+                      step, particles_.id[i]));
 }
 
 template <int D>
-std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, double dt) const {
+void Dynamics<D>::check_paths(const std::vector<Vec<D>>& velocity, double dt,
+                              std::int64_t step) const {
+  for (std::size_t i = 0; i < velocity.size(); ++i)
+    for (int c = 0; c < D; ++c) {
+      const double path = dt * velocity[i][c];
+      if (std::abs(path) < 0.5 * box_.size[c]) continue;
+      throw SolverError(
+          fmt::format("step {}: particle {} would move {:.3g} in direction {}, more than half the "
+                      "box ({:.3g}): the run has blown "
+                      "up; reduce integrator.dt (explicit repulsion wants dt below 0.2 gamma/a)",
+                      step, particles_.id[i], path, "xyz"[c], box_.size[c]));
+    }
+}
+
+template <int D>
+std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, double dt,
+                                           std::int64_t step) const {
+  check_paths(velocity, dt, step);
   std::vector<Vec<D>> r = particles_.position;
   for (std::size_t i = 0; i < r.size(); ++i) {
     r[i] += dt * velocity[i];
@@ -126,16 +156,9 @@ std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, 
 
 template <int D>
 std::int64_t Dynamics<D>::move(const std::vector<Vec<D>>& velocity, double dt, std::int64_t step) {
+  check_paths(velocity, dt, step);
   std::int64_t crossings = 0;
   for (std::size_t i = 0; i < velocity.size(); ++i) {
-    for (int c = 0; c < D; ++c) {
-      const double path = dt * velocity[i][c];
-      if (!(std::abs(path) < 0.5 * box_.size[c]))
-        throw SolverError(fmt::format(
-            "step {}: particle {} would move {:.3g} in direction {}, more than half the box ({:.3g}): the run has "
-            "blown up; reduce integrator.dt (explicit repulsion wants dt below 0.2 gamma/a)",
-            step, particles_.id[i], path, "xyz"[c], box_.size[c]));
-    }
     particles_.position[i] += dt * velocity[i];
     particles_.velocity[i] = velocity[i];
     box_.wrap(particles_.position[i], particles_.image[i]);

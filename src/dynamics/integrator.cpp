@@ -14,8 +14,8 @@ template <int D>
 std::unique_ptr<Integrator<D>> make_integrator(const std::string& name) {
   if (name == "trapezoidal") return std::make_unique<Trapezoidal<D>>();
   if (name == "euler") return std::make_unique<Euler<D>>();
-  throw ConfigError(
-      fmt::format("there is no integrator '{}': use one of {}", name, fmt::join(integrator_names(), ", ")));
+  throw ConfigError(fmt::format("there is no integrator '{}': use one of {}", name,
+                                fmt::join(integrator_names(), ", ")));
 }
 
 template std::unique_ptr<Integrator<2>> make_integrator<2>(const std::string&);

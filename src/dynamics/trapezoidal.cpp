@@ -9,11 +9,13 @@ const StepRecord<D>& Trapezoidal<D>::step(Dynamics<D>& dynamics, const Clock& cl
   record_.has_corrector = true;
   dynamics.reorder_if_due(clock.step);
   dynamics.evaluate(dynamics.particles().position, clock.time(), record_.start);
-  const std::vector<double> xi = dynamics.draw_noise(record_.start, clock.step, clock.dt, record_.edge_noise);
+  const std::vector<double> xi =
+      dynamics.draw_noise(record_.start, clock.step, clock.dt, record_.edge_noise);
   std::vector<double> q(xi.size(), 0.0);
   dynamics.solve(record_.start, xi, q, clock.step);
 
-  const std::vector<Vec<D>> predicted = dynamics.displaced(record_.start.velocity, clock.dt);
+  const std::vector<Vec<D>> predicted =
+      dynamics.displaced(record_.start.velocity, clock.dt, clock.step);
   dynamics.evaluate(predicted, clock.time() + clock.dt, record_.corrector);
   // The first answer is the guess of the second solve; the noise is the stored vector, never drawn again.
   dynamics.solve(record_.corrector, xi, q, clock.step);

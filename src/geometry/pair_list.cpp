@@ -17,7 +17,8 @@ CellList<D>::CellList(const Box<D>& box, double width, std::span<const Vec<D>> p
     const auto n = static_cast<std::int64_t>(box.size[c] / width);
     // More cells than particles per direction would only cost memory.
     const auto most = std::max<std::int64_t>(1, static_cast<std::int64_t>(positions.size()));
-    count_[static_cast<std::size_t>(c)] = std::clamp<std::int64_t>(n, 1, std::min<std::int64_t>(most, 1024));
+    count_[static_cast<std::size_t>(c)] =
+        std::clamp<std::int64_t>(n, 1, std::min<std::int64_t>(most, 1024));
     cell_count_ *= count_[static_cast<std::size_t>(c)];
   }
   start_.assign(static_cast<std::size_t>(cell_count_) + 1, 0);
@@ -41,7 +42,8 @@ std::int64_t CellList<D>::cell_of(const Vec<D>& r) const {
     const std::int64_t n = count_[static_cast<std::size_t>(c)];
     const double x = r[c] / box_.size[c] * static_cast<double>(n);
     // Outside a bounded direction (or not a number): the border cell.
-    const std::int64_t k = x > 0.0 ? static_cast<std::int64_t>(std::min(x, static_cast<double>(n - 1))) : 0;
+    const std::int64_t k =
+        x > 0.0 ? static_cast<std::int64_t>(std::min(x, static_cast<double>(n - 1))) : 0;
     cell = cell * n + k;
   }
   return cell;
@@ -88,10 +90,11 @@ PairList<D>::PairList(const Box<D>& box, double cutoff, double skin)
     : box_(box), cutoff_(cutoff), skin_(skin) {
   for (int c = 0; c < D; ++c)
     if (box.is_periodic(c) && box.size[c] < 2.0 * cutoff)
-      throw ConfigError(fmt::format(
-          "the box is {} long in direction {}, which is periodic: it must be at least two cutoffs ({}), or a "
-          "particle would see a neighbour twice; enlarge box.size",
-          box.size[c], "xyz"[c], 2.0 * cutoff));
+      throw ConfigError(
+          fmt::format("the box is {} long in direction {}, which is periodic: it must be at least "
+                      "two cutoffs ({}), or a "
+                      "particle would see a neighbour twice; enlarge box.size",
+                      box.size[c], "xyz"[c], 2.0 * cutoff));
 }
 
 template <int D>
@@ -148,7 +151,8 @@ void PairList<D>::rebuild(std::span<const Vec<D>> positions) {
 }
 
 template <int D>
-std::vector<std::int32_t> spatial_order(const Box<D>& box, double width, std::span<const Vec<D>> positions,
+std::vector<std::int32_t> spatial_order(const Box<D>& box, double width,
+                                        std::span<const Vec<D>> positions,
                                         std::span<const std::int64_t> id) {
   const CellList<D> cells(box, width, positions);
   std::vector<std::int32_t> order;

@@ -23,8 +23,9 @@ void for_each_incidence(const PairNetwork<D>& network, const Add& add) {
 template <int D>
 void add_edge_forces(const PairNetwork<D>& network, std::span<const Vec<D>> edge_force,
                      std::vector<Vec<D>>& force) {
-  for_each_incidence(network,
-                     [&](std::size_t p, std::size_t k, double sign) { force[p] += sign * edge_force[k]; });
+  for_each_incidence(network, [&](std::size_t p, std::size_t k, double sign) {
+    force[p] += sign * edge_force[k];
+  });
 }
 
 template <int D>
@@ -50,14 +51,17 @@ void add_friction_forces(const PairNetwork<D>& network, std::span<const Vec<D>> 
 template <int D>
 void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian) {
   for_each_incidence(network, [&](std::size_t p, std::size_t k, double) {
-    if (network.f_c[k] != 0.0) laplacian[p] += network.k_c[k] - (D - 1) * network.f_c[k] / network.r[k];
+    if (network.f_c[k] != 0.0)
+      laplacian[p] += network.k_c[k] - (D - 1) * network.f_c[k] / network.r[k];
   });
 }
 
-#define ODPD_INSTANTIATE(D)                                                                                    \
-  template void add_edge_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>, std::vector<Vec<D>>&);     \
-  template void add_conservative_forces<D>(const PairNetwork<D>&, std::vector<Vec<D>>&);                      \
-  template void add_friction_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>, std::vector<Vec<D>>&); \
+#define ODPD_INSTANTIATE(D)                                                              \
+  template void add_edge_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,       \
+                                   std::vector<Vec<D>>&);                                \
+  template void add_conservative_forces<D>(const PairNetwork<D>&, std::vector<Vec<D>>&); \
+  template void add_friction_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,   \
+                                       std::vector<Vec<D>>&);                            \
   template void add_laplacian<D>(const PairNetwork<D>&, std::vector<double>&);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)

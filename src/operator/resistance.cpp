@@ -34,7 +34,8 @@ double relative_determinant(const double* block) {
     if (!(pivot > 0.0)) return 0.0;
     det *= pivot * D / trace;
     for (std::size_t row = p + 1; row < D; ++row)
-      for (std::size_t col = p + 1; col < D; ++col) m[row * D + col] -= m[row * D + p] * m[p * D + col] / pivot;
+      for (std::size_t col = p + 1; col < D; ++col)
+        m[row * D + col] -= m[row * D + p] * m[p * D + col] / pivot;
   }
   return det;
 }
@@ -42,21 +43,24 @@ double relative_determinant(const double* block) {
 }  // namespace
 
 template <int D>
-void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs, const Particles<D>& particles,
-                            std::span<const Vec<D>> positions, double shift) {
+void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs,
+                            const Particles<D>& particles, std::span<const Vec<D>> positions,
+                            double shift) {
   nodes_ = dofs.nodes();
   shift_ = shift;
   ++generation_;
   start_.assign(static_cast<std::size_t>(nodes_) + 1, 0);
   for (std::size_t n = 0; n < static_cast<std::size_t>(nodes_); ++n)
-    start_[n + 1] = start_[n] + static_cast<std::int64_t>(network.edges_of(dofs.particle_of(n)).size());
+    start_[n + 1] =
+        start_[n] + static_cast<std::int64_t>(network.edges_of(dofs.particle_of(n)).size());
   entries_.resize(static_cast<std::size_t>(start_.back()));
   positions_.resize(static_cast<std::size_t>(nodes_) * D);
   parallel_for(nodes_, [&](std::int64_t node) {
     const auto n = static_cast<std::size_t>(node);
     const std::int32_t particle = dofs.particle_of(n);
     for (int c = 0; c < D; ++c)
-      positions_[n * D + static_cast<std::size_t>(c)] = positions[static_cast<std::size_t>(particle)][c];
+      positions_[n * D + static_cast<std::size_t>(c)] =
+          positions[static_cast<std::size_t>(particle)][c];
     auto slot = static_cast<std::size_t>(start_[n]);
     for (const std::int32_t edge : network.edges_of(particle)) {
       const auto k = static_cast<std::size_t>(edge);
@@ -77,7 +81,8 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
 }
 
 template <int D>
-void Resistance<D>::check_rattlers(const DofMap<D>& dofs, const Particles<D>& particles, double shift) const {
+void Resistance<D>::check_rattlers(const DofMap<D>& dofs, const Particles<D>& particles,
+                                   double shift) const {
   std::vector<double> blocks(static_cast<std::size_t>(nodes_) * D * D);
   block_diagonal(blocks);
   // Below this a block inverse would amplify rounding beyond any tolerance in use.
@@ -86,9 +91,12 @@ void Resistance<D>::check_rattlers(const DofMap<D>& dofs, const Particles<D>& pa
     if (relative_determinant<D>(&blocks[n * D * D]) > singular) continue;
     const std::int64_t neighbours = start_[n + 1] - start_[n];
     throw SolverError(fmt::format(
-        "particle {} is a rattler: its {} neighbour(s) within the cutoff leave it free to move in some direction "
-        "without friction, so R (diagonal shift {}) is singular. Cures: a weak pairwise friction of longer range "
-        "(fluid.rattler_friction = {{ gamma = 0.1, cutoff = 2.0 }}), a higher density or a larger cutoff, or mass",
+        "particle {} is a rattler: its {} neighbour(s) within the cutoff leave it free to move in "
+        "some direction "
+        "without friction, so R (diagonal shift {}) is singular. Cures: a weak pairwise friction "
+        "of longer range "
+        "(fluid.rattler_friction = {{ gamma = 0.1, cutoff = 2.0 }}), a higher density or a larger "
+        "cutoff, or mass",
         particles.id[static_cast<std::size_t>(dofs.particle_of(n))], neighbours, shift));
   }
 }
@@ -99,9 +107,11 @@ void Resistance<D>::apply(std::span<const double> x, std::span<double> y) const 
     const auto n = static_cast<std::size_t>(node);
     const Vec<D> xi = load<D>(x, n);
     Vec<D> sum = shift_ * xi;
-    for (auto k = static_cast<std::size_t>(start_[n]); k < static_cast<std::size_t>(start_[n + 1]); ++k) {
+    for (auto k = static_cast<std::size_t>(start_[n]); k < static_cast<std::size_t>(start_[n + 1]);
+         ++k) {
       const Entry& entry = entries_[k];
-      sum += stretch(entry, entry.node < 0 ? xi : xi - load<D>(x, static_cast<std::size_t>(entry.node)));
+      sum += stretch(entry,
+                     entry.node < 0 ? xi : xi - load<D>(x, static_cast<std::size_t>(entry.node)));
     }
     for (int c = 0; c < D; ++c) y[n * D + static_cast<std::size_t>(c)] = sum[c];
   });
@@ -115,10 +125,12 @@ void Resistance<D>::block_diagonal(std::span<double> blocks) const {
       Vec<D> unit{};
       unit[col] = 1.0;
       Vec<D> sum = shift_ * unit;
-      for (auto k = static_cast<std::size_t>(start_[n]); k < static_cast<std::size_t>(start_[n + 1]); ++k)
+      for (auto k = static_cast<std::size_t>(start_[n]);
+           k < static_cast<std::size_t>(start_[n + 1]); ++k)
         sum += stretch(entries_[k], unit);
       for (int row = 0; row < D; ++row)
-        blocks[(n * D + static_cast<std::size_t>(row)) * D + static_cast<std::size_t>(col)] = sum[row];
+        blocks[(n * D + static_cast<std::size_t>(row)) * D + static_cast<std::size_t>(col)] =
+            sum[row];
     }
   });
 }
@@ -135,14 +147,17 @@ const BlockCsr& Resistance<D>::matrix() const {
   std::vector<const Entry*> row;
   for (std::size_t n = 0; n < static_cast<std::size_t>(nodes_); ++n) {
     row.clear();
-    for (auto k = static_cast<std::size_t>(start_[n]); k < static_cast<std::size_t>(start_[n + 1]); ++k)
+    for (auto k = static_cast<std::size_t>(start_[n]); k < static_cast<std::size_t>(start_[n + 1]);
+         ++k)
       if (entries_[k].node >= 0) row.push_back(&entries_[k]);
-    std::stable_sort(row.begin(), row.end(), [](const Entry* a, const Entry* b) { return a->node < b->node; });
+    std::stable_sort(row.begin(), row.end(),
+                     [](const Entry* a, const Entry* b) { return a->node < b->node; });
     const auto self = static_cast<std::int32_t>(n);
     auto next = row.begin();
     const auto put = [&](const Entry& entry) {
       // Several edges may join the same two nodes; their blocks add up.
-      const bool again = static_cast<std::int32_t>(m.column.size()) > m.start[n] && m.column.back() == entry.node;
+      const bool again =
+          static_cast<std::int32_t>(m.column.size()) > m.start[n] && m.column.back() == entry.node;
       if (!again) {
         m.column.push_back(entry.node);
         m.value.insert(m.value.end(), D * D, 0.0);

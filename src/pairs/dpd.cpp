@@ -31,12 +31,14 @@ void validate(const DpdParameters& p) {
 // The force of a pair must not depend on which of the two comes first in memory.
 void validate(std::size_t species, const std::vector<DpdParameters>& table) {
   if (table.size() != species * species)
-    throw ConfigError(fmt::format("DPD parameters of {} pairs of species are given, {} species have {}",
-                                  table.size(), species, species * species));
+    throw ConfigError(
+        fmt::format("DPD parameters of {} pairs of species are given, {} species have {}",
+                    table.size(), species, species * species));
   for (std::size_t a = 0; a < species; ++a)
     for (std::size_t b = 0; b < a; ++b)
       if (table[a * species + b] != table[b * species + a])
-        throw ConfigError(fmt::format("DPD parameters of species {} with {} must be those of {} with {}", a, b, b, a));
+        throw ConfigError(fmt::format(
+            "DPD parameters of species {} with {} must be those of {} with {}", a, b, b, a));
   for (const DpdParameters& p : table) validate(p);
 }
 
@@ -70,15 +72,17 @@ PairTerms DpdModel<D>::terms(double r, Site site_i, Site site_j) const {
       t.u = p.a * p.cutoff / (p.s_bar + 1.0) * entry.energy(x);
     }
   }
-  if (p.gamma_far > 0.0 && r < p.cutoff_far) t.zeta_par += p.gamma_far * entry.w_d(1.0 - r / p.cutoff_far);
+  if (p.gamma_far > 0.0 && r < p.cutoff_far)
+    t.zeta_par += p.gamma_far * entry.w_d(1.0 - r / p.cutoff_far);
   return t;
 }
 
 template <int D>
-void DpdModel<D>::write_edges(const PairList<D>& list, const Box<D>& box, std::span<const Vec<D>> positions,
-                              const Particles<D>& particles, PairNetwork<D>& network) const {
-  write_pair_edges([this](double r, Site i, Site j) { return terms(r, i, j); }, cutoff_, list, box, positions,
-                   particles, network);
+void DpdModel<D>::write_edges(const PairList<D>& list, const Box<D>& box,
+                              std::span<const Vec<D>> positions, const Particles<D>& particles,
+                              PairNetwork<D>& network) const {
+  write_pair_edges([this](double r, Site i, Site j) { return terms(r, i, j); }, cutoff_, list, box,
+                   positions, particles, network);
 }
 
 template class DpdModel<2>;

@@ -25,7 +25,8 @@ void PairNetwork<D>::index_edges() {
   std::vector<std::int64_t> next(start.begin(), start.end() - 1);
   for (std::size_t k = 0; k < i.size(); ++k)
     for (const std::int32_t p : {i[k], j[k]})
-      edge[static_cast<std::size_t>(next[static_cast<std::size_t>(p)]++)] = static_cast<std::int32_t>(k);
+      edge[static_cast<std::size_t>(next[static_cast<std::size_t>(p)]++)] =
+          static_cast<std::int32_t>(k);
 }
 
 template <int D>

@@ -8,8 +8,9 @@
 namespace odpd {
 
 template <int D>
-void draw_edge_noise(const PairNetwork<D>& network, const Particles<D>& particles, std::uint64_t seed,
-                     std::uint64_t step, double dt, std::vector<Vec<D>>& force) {
+void draw_edge_noise(const PairNetwork<D>& network, const Particles<D>& particles,
+                     std::uint64_t seed, std::uint64_t step, double dt,
+                     std::vector<Vec<D>>& force) {
   const CounterRandom random(seed, Stream::pair_noise);
   force.resize(static_cast<std::size_t>(network.size()));
   parallel_for(network.size(), [&](std::int64_t edge) {
@@ -31,9 +32,9 @@ void draw_edge_noise(const PairNetwork<D>& network, const Particles<D>& particle
   });
 }
 
-template void draw_edge_noise<2>(const PairNetwork<2>&, const Particles<2>&, std::uint64_t, std::uint64_t, double,
-                                 std::vector<Vec<2>>&);
-template void draw_edge_noise<3>(const PairNetwork<3>&, const Particles<3>&, std::uint64_t, std::uint64_t, double,
-                                 std::vector<Vec<3>>&);
+template void draw_edge_noise<2>(const PairNetwork<2>&, const Particles<2>&, std::uint64_t,
+                                 std::uint64_t, double, std::vector<Vec<2>>&);
+template void draw_edge_noise<3>(const PairNetwork<3>&, const Particles<3>&, std::uint64_t,
+                                 std::uint64_t, double, std::vector<Vec<3>>&);
 
 }  // namespace odpd

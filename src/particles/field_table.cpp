@@ -53,9 +53,9 @@ void restore(const StateReader& in, const std::string& name, std::vector<T>& val
     flat = in.read_integers(name);
   }
   if (flat.size() % Flat<T>::width != 0)
-    throw IoError(fmt::format(
-        "the checkpoint holds {} numbers in '{}', not a multiple of {}: it is damaged", flat.size(),
-        name, Flat<T>::width));
+    throw IoError(
+        fmt::format("the checkpoint holds {} numbers in '{}', not a multiple of {}: it is damaged",
+                    flat.size(), name, Flat<T>::width));
   values.resize(flat.size() / Flat<T>::width);
   for (std::size_t i = 0; i < values.size(); ++i)
     for (std::size_t c = 0; c < Flat<T>::width; ++c)
@@ -96,8 +96,9 @@ void FieldTable<D>::load(const StateReader& in) {
         [&](auto* column) {
           restore(in, fields_[k].name, *column);
           if (k > 0 && column->size() != size)
-            throw IoError(fmt::format("the checkpoint holds {} particles in '{}' but {} in '{}': it is damaged",
-                                      column->size(), fields_[k].name, size, fields_[0].name));
+            throw IoError(fmt::format(
+                "the checkpoint holds {} particles in '{}' but {} in '{}': it is damaged",
+                column->size(), fields_[k].name, size, fields_[0].name));
           size = column->size();
         },
         fields_[k].column);

@@ -16,7 +16,8 @@ namespace {
 
 // Sites of a regular grid over [low, high), counts per direction.
 template <int D>
-std::vector<Vec<D>> grid_sites(const Vec<D>& low, const Vec<D>& high, const std::array<std::int64_t, D>& count) {
+std::vector<Vec<D>> grid_sites(const Vec<D>& low, const Vec<D>& high,
+                               const std::array<std::int64_t, D>& count) {
   std::vector<Vec<D>> sites(1, low);
   for (int c = 0; c < D; ++c) {
     const std::int64_t n = count[static_cast<std::size_t>(c)];
@@ -24,7 +25,8 @@ std::vector<Vec<D>> grid_sites(const Vec<D>& low, const Vec<D>& high, const std:
     next.reserve(sites.size() * static_cast<std::size_t>(n));
     for (std::int64_t k = 0; k < n; ++k)
       for (Vec<D> site : sites) {
-        site[c] = low[c] + (high[c] - low[c]) * (static_cast<double>(k) + 0.5) / static_cast<double>(n);
+        site[c] =
+            low[c] + (high[c] - low[c]) * (static_cast<double>(k) + 0.5) / static_cast<double>(n);
         next.push_back(site);
       }
     sites.swap(next);
@@ -41,43 +43,49 @@ std::vector<Vec<D>> lattice(const Vec<D>& low, const Vec<D>& high, std::int64_t 
   for (; sites < count; spacing *= 0.999) {
     sites = 1;
     for (int c = 0; c < D; ++c) {
-      n[static_cast<std::size_t>(c)] =
-          std::max<std::int64_t>(1, static_cast<std::int64_t>(std::floor((high[c] - low[c]) / spacing + 1e-9)));
+      n[static_cast<std::size_t>(c)] = std::max<std::int64_t>(
+          1, static_cast<std::int64_t>(std::floor((high[c] - low[c]) / spacing + 1e-9)));
       sites *= n[static_cast<std::size_t>(c)];
     }
   }
   const std::vector<Vec<D>> all = grid_sites<D>(low, high, n);
   std::vector<Vec<D>> chosen;
-  for (std::int64_t k = 0; k < count; ++k) chosen.push_back(all[static_cast<std::size_t>(k * sites / count)]);
+  for (std::int64_t k = 0; k < count; ++k)
+    chosen.push_back(all[static_cast<std::size_t>(k * sites / count)]);
   return chosen;
 }
 
 template <int D>
-std::vector<Vec<D>> random_points(std::uint64_t seed, const Vec<D>& low, const Vec<D>& high, std::int64_t count) {
+std::vector<Vec<D>> random_points(std::uint64_t seed, const Vec<D>& low, const Vec<D>& high,
+                                  std::int64_t count) {
   const CounterRandom random(seed, Stream::start_positions);
   std::vector<Vec<D>> points(static_cast<std::size_t>(count));
   for (std::int64_t k = 0; k < count; ++k) {
     const auto u = random.uniforms(0, 0, static_cast<std::uint64_t>(k), 0);
     for (int c = 0; c < D; ++c)
-      points[static_cast<std::size_t>(k)][c] = low[c] + (high[c] - low[c]) * u[static_cast<std::size_t>(c)];
+      points[static_cast<std::size_t>(k)][c] =
+          low[c] + (high[c] - low[c]) * u[static_cast<std::size_t>(c)];
   }
   return points;
 }
 
 // Species of `count` particles, mixed at random: exact counts first, the rest by fractions.
-std::vector<std::int32_t> assign_species(const std::vector<SpeciesSettings>& species, std::uint64_t seed,
-                                         std::int64_t count) {
+std::vector<std::int32_t> assign_species(const std::vector<SpeciesSettings>& species,
+                                         std::uint64_t seed, std::int64_t count) {
   std::int64_t fixed = 0;
   for (const SpeciesSettings& s : species) fixed += std::max<std::int64_t>(s.count, 0);
   if (fixed > count)
-    throw ConfigError(fmt::format("[[species]]: the counts add up to {}, but the fluid has {} particles; lower them or "
-                                  "raise fluid.count or fluid.density",
-                                  fixed, count));
-  const bool by_fraction = std::any_of(species.begin(), species.end(), [](const auto& s) { return s.count < 0; });
+    throw ConfigError(fmt::format(
+        "[[species]]: the counts add up to {}, but the fluid has {} particles; lower them or "
+        "raise fluid.count or fluid.density",
+        fixed, count));
+  const bool by_fraction =
+      std::any_of(species.begin(), species.end(), [](const auto& s) { return s.count < 0; });
   if (!by_fraction && fixed != count)
-    throw ConfigError(fmt::format("[[species]]: the counts add up to {}, but the fluid has {} particles; make them equal "
-                                  "or give one species a fraction",
-                                  fixed, count));
+    throw ConfigError(fmt::format(
+        "[[species]]: the counts add up to {}, but the fluid has {} particles; make them equal "
+        "or give one species a fraction",
+        fixed, count));
   std::vector<std::int32_t> list;
   double share = 0.0;
   std::int64_t given = 0;
@@ -99,13 +107,15 @@ std::vector<std::int32_t> assign_species(const std::vector<SpeciesSettings>& spe
 }
 
 template <int D>
-void check_start_positions(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<D>& high) {
+void check_start_positions(const SceneSettings<D>& settings, const Vec<D>& low,
+                           const Vec<D>& high) {
   for (std::size_t k = 0; k < settings.start_positions.size(); ++k)
     for (int c = 0; c < D; ++c) {
       const double x = settings.start_positions[k][c];
       if (!std::isfinite(x) || (!settings.box.is_periodic(c) && (x < low[c] || x > high[c])))
-        throw ConfigError(fmt::format("{}: particle {} lies at {} = {}, but the fluid reaches from {} to {}",
-                                      settings.start_file, k, "xyz"[c], x, low[c], high[c]));
+        throw ConfigError(
+            fmt::format("{}: particle {} lies at {} = {}, but the fluid reaches from {} to {}",
+                        settings.start_file, k, "xyz"[c], x, low[c], high[c]));
     }
 }
 
@@ -119,9 +129,10 @@ void place_walls(const SceneSettings<D>& settings, Particles<D>& particles) {
       std::array<std::int64_t, D> count{};
       for (int c = 0; c < D; ++c)
         count[static_cast<std::size_t>(c)] =
-            c == wall.axis    ? 1
-            : layer.count > 0 ? layer.count
-                              : std::max<std::int64_t>(1, std::llround(settings.box.size[c] / layer.spacing));
+            c == wall.axis ? 1
+            : layer.count > 0
+                ? layer.count
+                : std::max<std::int64_t>(1, std::llround(settings.box.size[c] / layer.spacing));
       for (Vec<D> site : grid_sites<D>(Vec<D>{}, settings.box.size, count)) {
         const double from_end = wall.thickness - layer.depth;
         site[wall.axis] = wall.high ? settings.box.size[wall.axis] - from_end : from_end;
@@ -132,7 +143,8 @@ void place_walls(const SceneSettings<D>& settings, Particles<D>& particles) {
 }
 
 template <int D>
-void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<D>& high, Particles<D>& particles) {
+void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<D>& high,
+                 Particles<D>& particles) {
   std::vector<Vec<D>> points;
   std::vector<std::int32_t> species = settings.start_species;
   if (settings.start == StartKind::file) {
@@ -140,13 +152,15 @@ void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<
     points = settings.start_positions;
   } else {
     const double volume = Box<D>{high - low, {}}.volume();
-    const std::int64_t count = settings.count > 0 ? settings.count : std::llround(settings.density * volume);
+    const std::int64_t count =
+        settings.count > 0 ? settings.count : std::llround(settings.density * volume);
     if (count < 1) throw ConfigError("the fluid has no particles: raise fluid.density or the box");
     points = settings.start == StartKind::lattice ? lattice(low, high, count)
                                                   : random_points(settings.seed, low, high, count);
   }
   if (species.empty())
-    species = assign_species(settings.species, settings.seed, static_cast<std::int64_t>(points.size()));
+    species =
+        assign_species(settings.species, settings.seed, static_cast<std::int64_t>(points.size()));
   for (std::size_t k = 0; k < points.size(); ++k) {
     particles.add(points[k], species[k], 0);
     settings.box.wrap(particles.position.back());
@@ -154,8 +168,8 @@ void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<
 }
 
 template <int D>
-void relax(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& surroundings, std::int64_t sweeps,
-           Particles<D>& particles) {
+void relax(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& surroundings,
+           std::int64_t sweeps, Particles<D>& particles) {
   if (!model.conservative()) return;
   PairList<D> list(box, model.cutoff(), 0.4 * model.cutoff());
   PairNetwork<D> network;
@@ -185,7 +199,9 @@ template void place_walls<2>(const SceneSettings<2>&, Particles<2>&);
 template void place_walls<3>(const SceneSettings<3>&, Particles<3>&);
 template void place_fluid<2>(const SceneSettings<2>&, const Vec<2>&, const Vec<2>&, Particles<2>&);
 template void place_fluid<3>(const SceneSettings<3>&, const Vec<3>&, const Vec<3>&, Particles<3>&);
-template void relax<2>(const Box<2>&, const PairModel<2>&, const Surroundings<2>&, std::int64_t, Particles<2>&);
-template void relax<3>(const Box<3>&, const PairModel<3>&, const Surroundings<3>&, std::int64_t, Particles<3>&);
+template void relax<2>(const Box<2>&, const PairModel<2>&, const Surroundings<2>&, std::int64_t,
+                       Particles<2>&);
+template void relax<3>(const Box<3>&, const PairModel<3>&, const Surroundings<3>&, std::int64_t,
+                       Particles<3>&);
 
 }  // namespace odpd

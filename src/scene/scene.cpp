@@ -9,7 +9,8 @@ namespace odpd {
 template <int D>
 Scene<D>::Scene(SceneSettings<D> settings)
     : settings_(std::move(settings)),
-      model_(std::make_unique<DpdModel<D>>(static_cast<int>(settings_.species.size()), settings_.pairs)) {
+      model_(std::make_unique<DpdModel<D>>(static_cast<int>(settings_.species.size()),
+                                           settings_.pairs)) {
   place_walls(settings_, particles_);
   place_fluid(settings_, fluid_low(), fluid_high(), particles_);
   relax(settings_.box, *model_, *this, settings_.relax_sweeps, particles_);
@@ -50,7 +51,8 @@ double Scene<D>::depth_behind(const WallSettings<D>& wall, const Vec<D>& r) cons
 }
 
 template <int D>
-void Scene<D>::add_potential_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
+void Scene<D>::add_potential_forces(const Particles<D>& particles,
+                                    std::span<const Vec<D>> positions,
                                     std::vector<Vec<D>>& force) const {
   for (const auto& wall : settings_.walls)
     for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -74,7 +76,8 @@ double Scene<D>::potential_energy(const Particles<D>& particles, std::span<const
 }
 
 template <int D>
-void Scene<D>::add_driving_forces(const Particles<D>& particles, double, std::vector<Vec<D>>& force) const {
+void Scene<D>::add_driving_forces(const Particles<D>& particles, double,
+                                  std::vector<Vec<D>>& force) const {
   if (dot(settings_.body_force, settings_.body_force) == 0.0) return;
   for (std::size_t i = 0; i < force.size(); ++i)
     if (particles.is_free(i)) force[i] += settings_.body_force;

@@ -10,9 +10,11 @@ namespace odpd {
 namespace {
 
 template <int D>
-Vec<D> read_vector(const Config& config, const std::string& key, const std::vector<double>& values) {
+Vec<D> read_vector(const Config& config, const std::string& key,
+                   const std::vector<double>& values) {
   if (values.size() != D)
-    config.fail(key, fmt::format("{} components are needed in {} dimensions, there are {}", D, D, values.size()));
+    config.fail(key, fmt::format("{} components are needed in {} dimensions, there are {}", D, D,
+                                 values.size()));
   Vec<D> v;
   for (int c = 0; c < D; ++c) v[c] = values[static_cast<std::size_t>(c)];
   return v;
@@ -49,7 +51,8 @@ DpdParameters read_pair(const Config& config, const DpdParameters& base, bool re
     config.fail("sigma", "give gamma or sigma, never both: sigma^2 = 2 gamma kT");
   if (config.has("sigma")) {
     const double sigma = config.positive("sigma");
-    if (p.kT == 0.0) config.fail("sigma", "at kT = 0 there is no noise to set the friction by: give gamma");
+    if (p.kT == 0.0)
+      config.fail("sigma", "at kT = 0 there is no noise to set the friction by: give gamma");
     p.gamma = sigma * sigma / (2.0 * p.kT);
   } else if (required || config.has("gamma")) {
     p.gamma = config.positive("gamma");
@@ -63,8 +66,10 @@ std::vector<SpeciesSettings> read_species(const Config& config) {
     SpeciesSettings s;
     s.name = entry.text("name");
     for (const SpeciesSettings& other : species)
-      if (other.name == s.name) entry.fail("name", fmt::format("species '{}' stands here twice", s.name));
-    if (entry.has("count") && entry.has("fraction")) entry.fail("count", "give count or fraction, never both");
+      if (other.name == s.name)
+        entry.fail("name", fmt::format("species '{}' stands here twice", s.name));
+    if (entry.has("count") && entry.has("fraction"))
+      entry.fail("count", "give count or fraction, never both");
     if (entry.has("count")) {
       s.count = entry.integer("count");
       if (s.count < 0) entry.fail("count", "must be zero or positive");
@@ -92,12 +97,16 @@ void read_fluid(const Config& config, SceneSettings<D>& scene) {
   fluid.choice("model", {"dpd"}, "dpd");
   const double mass = fluid.non_negative("mass", 0.0);
   if (mass != 0.0)
-    fluid.fail("mass", "this version solves the massless case only (its integrators are trapezoidal and euler): set "
-                       "mass = 0.0");
-  if (fluid.has("density") && fluid.has("count")) fluid.fail("count", "give density or count, never both");
+    fluid.fail("mass",
+               "this version solves the massless case only (its integrators are trapezoidal and "
+               "euler): set "
+               "mass = 0.0");
+  if (fluid.has("density") && fluid.has("count"))
+    fluid.fail("count", "give density or count, never both");
   if (scene.start == StartKind::file && (fluid.has("density") || fluid.has("count")))
-    fluid.fail(fluid.has("density") ? "density" : "count", "the start file says how many particles there are: leave this "
-                                                           "key out, or set start.from");
+    fluid.fail(fluid.has("density") ? "density" : "count",
+               "the start file says how many particles there are: leave this "
+               "key out, or set start.from");
   if (fluid.has("count")) {
     scene.count = fluid.integer("count");
     if (scene.count < 1) fluid.fail("count", "must be positive");
@@ -110,16 +119,20 @@ void read_fluid(const Config& config, SceneSettings<D>& scene) {
     base.gamma_far = far.positive("gamma");
     base.cutoff_far = far.positive("cutoff");
     if (base.cutoff_far <= base.cutoff)
-      far.fail("cutoff", fmt::format("must be larger than fluid.cutoff = {}, to reach particles without neighbours",
-                                     base.cutoff));
+      far.fail("cutoff",
+               fmt::format(
+                   "must be larger than fluid.cutoff = {}, to reach particles without neighbours",
+                   base.cutoff));
   }
   const std::size_t n = scene.species.size();
   scene.pairs.assign(n * n, base);
   for (const Config& entry : config.tables("pair")) {
     const std::vector<std::string> names = entry.texts("species");
     if (names.size() != 2) entry.fail("species", "two names are needed");
-    const auto a = static_cast<std::size_t>(species_index(scene.species, entry, "species", names[0]));
-    const auto b = static_cast<std::size_t>(species_index(scene.species, entry, "species", names[1]));
+    const auto a =
+        static_cast<std::size_t>(species_index(scene.species, entry, "species", names[0]));
+    const auto b =
+        static_cast<std::size_t>(species_index(scene.species, entry, "species", names[1]));
     const DpdParameters p = read_pair(entry, base, false);
     scene.pairs[a * n + b] = p;
     scene.pairs[b * n + a] = p;
@@ -133,8 +146,11 @@ std::vector<WallLayer> read_layers(const Config& wall, double thickness) {
     WallLayer layer;
     layer.depth = entry.non_negative("depth");
     if (layer.depth > thickness)
-      entry.fail("depth", fmt::format("the layer lies outside the box: depth must be at most thickness = {}", thickness));
-    if (entry.has("count") == entry.has("spacing")) entry.fail("count", "give count or spacing, one of them");
+      entry.fail("depth",
+                 fmt::format("the layer lies outside the box: depth must be at most thickness = {}",
+                             thickness));
+    if (entry.has("count") == entry.has("spacing"))
+      entry.fail("count", "give count or spacing, one of them");
     if (entry.has("count")) {
       layer.count = entry.integer("count");
       if (layer.count < 1) entry.fail("count", "must be positive");
@@ -146,7 +162,8 @@ std::vector<WallLayer> read_layers(const Config& wall, double thickness) {
   }
   if (layers.empty())
     wall.fail("layers",
-              "a wall needs at least one layer of frozen particles, e.g. layers = [{ depth = 0.0, spacing = 0.2 }]: "
+              "a wall needs at least one layer of frozen particles, e.g. layers = [{ depth = 0.0, "
+              "spacing = 0.2 }]: "
               "without their friction nothing holds a massless fluid");
   return layers;
 }
@@ -161,19 +178,26 @@ WallSettings<D> read_wall(const Config& entry, const SceneSettings<D>& scene) {
   wall.axis = side[0] - 'x';
   wall.high = side[1] == '+';
   if (scene.box.is_periodic(wall.axis))
-    entry.fail("side", fmt::format("direction {} is periodic (box.periodic): a wall contradicts it", side[0]));
-  if (scene.wall_at(wall.axis, wall.high) >= 0) entry.fail("side", fmt::format("there are two walls at {}", side));
+    entry.fail("side", fmt::format("direction {} is periodic (box.periodic): a wall contradicts it",
+                                   side[0]));
+  if (scene.wall_at(wall.axis, wall.high) >= 0)
+    entry.fail("side", fmt::format("there are two walls at {}", side));
   wall.thickness = entry.positive("thickness", 1.0);
   if (wall.thickness >= 0.5 * scene.box.size[wall.axis])
-    entry.fail("thickness", "the wall fills half of the box or more: nothing is left for the fluid");
+    entry.fail("thickness",
+               "the wall fills half of the box or more: nothing is left for the fluid");
   wall.velocity = read_optional_vector<D>(entry, "velocity");
   if (wall.velocity[wall.axis] != 0.0)
-    entry.fail("velocity", fmt::format("a wall moves along itself: component {} must be 0", side[0]));
+    entry.fail("velocity",
+               fmt::format("a wall moves along itself: component {} must be 0", side[0]));
   for (int c = 0; c < D; ++c)
     if (wall.velocity[c] != 0.0 && !scene.box.is_periodic(c))
-      entry.fail("velocity", fmt::format("a wall that moves in direction {} needs that direction periodic", "xyz"[c]));
+      entry.fail(
+          "velocity",
+          fmt::format("a wall that moves in direction {} needs that direction periodic", "xyz"[c]));
   wall.layers = read_layers<D>(entry, wall.thickness);
-  wall.species = species_index(scene.species, entry, "species", entry.text("species", scene.species[0].name));
+  wall.species =
+      species_index(scene.species, entry, "species", entry.text("species", scene.species[0].name));
   wall.stiffness = entry.positive("stiffness", wall.stiffness);
   return wall;
 }
@@ -184,31 +208,36 @@ void read_walls(const Config& config, SceneSettings<D>& scene) {
   for (int c = 0; c < D; ++c)
     for (const bool high : {false, true})
       if (!scene.box.is_periodic(c) && scene.wall_at(c, high) < 0)
-        config.table("box").fail("periodic", fmt::format("direction {} is bounded but has no wall at its {} end: add "
-                                                         "[[wall]] with side = \"{}{}\", or make it periodic",
-                                                         "xyz"[c], high ? "upper" : "lower", "xyz"[c],
-                                                         high ? '+' : '-'));
+        config.table("box").fail(
+            "periodic",
+            fmt::format("direction {} is bounded but has no wall at its {} end: add "
+                        "[[wall]] with side = \"{}{}\", or make it periodic",
+                        "xyz"[c], high ? "upper" : "lower", "xyz"[c], high ? '+' : '-'));
 }
 
 template <int D>
 void read_start(const Config& config, SceneSettings<D>& scene) {
   const Config start = config.table("start");
   const std::string from = start.choice("from", {"random", "lattice", "file"}, "random");
-  scene.start = from == "random" ? StartKind::random : from == "lattice" ? StartKind::lattice : StartKind::file;
-  if (scene.start == StartKind::file) scene.start_file = (config.directory() / start.text("file")).string();
+  scene.start = from == "random"    ? StartKind::random
+                : from == "lattice" ? StartKind::lattice
+                                    : StartKind::file;
+  if (scene.start == StartKind::file)
+    scene.start_file = (config.directory() / start.text("file")).string();
   scene.relax_sweeps = start.integer("relax_sweeps", scene.start == StartKind::random ? 100 : 0);
   if (scene.relax_sweeps < 0) start.fail("relax_sweeps", "must be zero or positive");
 }
 
 }  // namespace
 
-std::int32_t species_index(const std::vector<SpeciesSettings>& species, const Config& where, const std::string& key,
-                           const std::string& name) {
+std::int32_t species_index(const std::vector<SpeciesSettings>& species, const Config& where,
+                           const std::string& key, const std::string& name) {
   std::vector<std::string> names;
   for (const SpeciesSettings& s : species) names.push_back(s.name);
   for (std::size_t k = 0; k < names.size(); ++k)
     if (names[k] == name) return static_cast<std::int32_t>(k);
-  where.fail(key, fmt::format("there is no species '{}': the scene has {}", name, fmt::join(names, ", ")));
+  where.fail(
+      key, fmt::format("there is no species '{}': the scene has {}", name, fmt::join(names, ", ")));
 }
 
 template <int D>
@@ -233,8 +262,10 @@ SceneSettings<D> read_scene_settings(const Config& config) {
   scene.body_force = read_optional_vector<D>(body_force, "force");
   const bool driven = dot(scene.body_force, scene.body_force) > 0.0;
   if (driven && scene.walls.empty())
-    body_force.fail("force", "in a fully periodic box nothing balances a net force, so a massless fluid has no answer: "
-                             "add walls, or remove the force");
+    body_force.fail(
+        "force",
+        "in a fully periodic box nothing balances a net force, so a massless fluid has no answer: "
+        "add walls, or remove the force");
   return scene;
 }
 

@@ -10,12 +10,13 @@ source_root=$(realpath "$2")
 test_name=$(basename "$0" .sh)
 checks=0
 failures=0
-work=$(mktemp -d)
-cd "$work" || exit 1
-# Standard output and standard error of the last expect_exit; beside the work directory's own files.
-out_text=$work/.stdout
-err_text=$work/.stderr
-trap 'cd /; rm -rf "$work"' EXIT
+scratch=$(mktemp -d)
+trap 'cd /; rm -rf "$scratch"' EXIT
+work=$scratch/work
+mkdir "$work" && cd "$work" || exit 1
+# Standard output and standard error of the last expect_exit.
+out_text=$scratch/stdout
+err_text=$scratch/stderr
 
 python=/usr/bin/python3
 have_python() { [ -x "$python" ]; }
@@ -59,7 +60,7 @@ expect_text() {
   for text in "$@"; do
     checks=$((checks + 1))
     grep -qF -- "$text" "$file" && continue
-    fail "'$text' is not in $(basename "$file"), which reads"
+    fail "'$text' is not in ${file##*/}, which reads"
     head -n 8 "$file" | sed 's/^/    /'
   done
 }
@@ -67,9 +68,9 @@ expect_text() {
 # expect CONDITION-COMMAND...: it succeeds. The last failure is described by the command itself.
 expect() {
   checks=$((checks + 1))
-  "$@" >"$work/.expect" 2>&1 && return
+  "$@" >"$scratch/expect" 2>&1 && return
   fail "not true: $*"
-  head -n 8 "$work/.expect" | sed 's/^/    /'
+  head -n 8 "$scratch/expect" | sed 's/^/    /'
 }
 
 # The last expect_exit wrote one line "odpd: error: ..." and nothing else: no line on standard output,
@@ -95,8 +96,8 @@ expect_error() {
   shift
   expect_exit "$wanted" "${command[@]}"
   expect_one_error
-  grep '^odpd: error: ' "$err_text" >"$work/.message"
-  expect_text "$work/.message" "$@"
+  grep '^odpd: error: ' "$err_text" >"$scratch/message"
+  expect_text "$scratch/message" "$@"
 }
 
 # write_periodic DIRECTORY: a case of 64 particles in a periodic box, 40 steps.

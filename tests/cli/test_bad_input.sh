@@ -24,6 +24,10 @@ expect_exit 0 "$odpd" --version
 expect_text "$out_text" odpd
 expect_exit 0 "$odpd" info
 expect_text "$out_text" solvers pcg integrators trapezoidal
+expect_exit 0 "$odpd" run box --quiet --out quiet
+expect test -z "$(grep -v '^step' "$err_text")"
+expect_exit 0 "$odpd" --quiet run box --out quiet
+expect test -z "$(grep info "$err_text")"
 expect_error 1 "$odpd" -- --help
 expect_error 1 "$odpd" simulate box -- simulate 'run, compare, info'
 expect_error 1 run -- case
@@ -38,7 +42,7 @@ expect_error 1 run empty -- case.toml
 # --- keys and values, each with its file, line and key ---
 bad misspelt
 replace misspelt 'gamma = 4.5' 'gama = 4.5'
-expect_error 1 run misspelt -- 'fluid.gamma'
+expect_error 1 run misspelt -- 'fluid.gamma' "'gama' (misspelt/case.toml:$(line_of misspelt gama))"
 bad extra
 replace extra 'a = 18.5' 'a = 18.5\ngama_perp = 1.0'
 expect_error 1 run extra -- "extra/case.toml:$(line_of extra gama_perp)" fluid.gama_perp "'gamma_perp'"
@@ -102,8 +106,8 @@ expect_error 1 run box --set 'species=[{name="A", fraction=0.5}]' -- fraction
 
 # --- solvers ---
 if "$odpd" info | grep -q '^ *solvers .*petsc'; then
-  expect_error 1 run box --set solver.name=petsc --set 'solver.petsc_options="-pc_nonsense 3"' -- pc_nonsense
-  expect_error 1 run box --set solver.name=petsc --set 'solver.petsc_options="-pc_type nonsense"' -- nonsense
+  expect_error 1 run box --set solver.name=petsc --set 'solver.petsc_options="-pc_nonsense 3"' --out late -- pc_nonsense
+  expect_error 1 run box --set solver.name=petsc --set 'solver.petsc_options="-pc_type nonsense"' --out late -- nonsense
   expect_error 1 run box --set solver.name=petsc --set 'solver.petsc_options="-ksp_rtol 1e-3"' -- solver.tolerance
 else
   skip 'PETSc options: this build has no PETSc'
@@ -139,7 +143,10 @@ expect_error 2 run channel --set run.duration=1.0 --restart short/checkpoint.h5 
   -- solver.max_iterations
 expect_exit 0 run channel --set run.duration=0.3 --restart short/checkpoint.h5
 
-# --- start files ---
+# --- start files: they say how many particles there are ---
+expect_error 1 run box --set start.from=file --set 'start.file="any.csv"' -- fluid.density 'start file'
+sed -i '/^density/d' box/case.toml channel/case.toml
+expect_error 1 run box -- fluid.density missing
 start() { run "$1" --set start.from=file --set "start.file=\"$2\"" "${@:3}"; }
 printf 'x,y\n0.5,0.5\n1.0,1.0\n1.5,0.8\n1.0,0.5\n' >box/good.csv
 printf 'x,y\n0.5,0.5\n1.0,1.0,3\n' >box/ragged.csv
@@ -162,11 +169,16 @@ expect_error 3 start box broken.h5 -- broken.h5 HDF5
 expect_error 1 start box case.toml -- case.toml CSV
 cp box/good.csv channel/good.csv
 expect_error 1 start channel good.csv -- good.csv 'particle 0' y
-expect_exit 0 start box good.csv --set 'fluid.rattler_friction={gamma=0.1, cutoff=2.0}' --out started
+printf 'x,y\n' >box/grid.csv
+for x in 0.5 1.5 2.5 3.5; do for y in 0.2 0.9 1.6 2.3 3.0 3.7; do printf '%s,%s\n' $x $y; done; done >>box/grid.csv
+expect_exit 0 start box grid.csv --set 'fluid.rattler_friction={gamma=0.1, cutoff=2.0}' --out started
+expect_text "$out_text" '24 free particles'
 
 # --- checks ---
 cat >box/checked.toml <<'CASE'
 include = "case.toml"
+[fluid]
+density = 4.0
 [output]
 pictures = false
 [[check]]
@@ -181,6 +193,6 @@ expect_text "$out_text" FAILED 'outside the tolerance'
 expect_exit 0 run box/checked.toml --set check.0.observable=pressure --out checked
 expect_error 1 run box/checked.toml --set check.0.relative_tolerance=0.1 -- check tolerance
 
-# Nothing of all this was written where it should not be.
-expect test ! -e runs/box
+# Nothing that stands in the case file itself was found out only after something was written.
+expect test ! -e runs
 finish

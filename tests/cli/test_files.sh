@@ -163,16 +163,20 @@ if have_python; then
   expect_exit 0 run out/case.toml --set seed=8 --out other
   expect test "$(observables out)" != "$(observables other)"
   # Also when it starts from a file, which it names relative to its own directory.
-  printf 'x,y\n' >box/start.csv
+  mkdir seeded
+  sed '/^density/d' box/case.toml >seeded/case.toml
+  printf 'x,y\n' >seeded/start.csv
   for x in 0.2 0.7 1.2 1.7 2.2 2.7 3.2 3.7; do
     for y in 0.1 0.6 1.1 1.6 2.1 2.6 3.1 3.6; do printf '%s,%s\n' $x $y; done
-  done >>box/start.csv
-  expect_exit 0 run box --set start.from=file --set 'start.file="start.csv"' --out from_file
+  done >>seeded/start.csv
+  expect_exit 0 run seeded --set start.from=file --set 'start.file="start.csv"' --out from_file
   expect_exit 0 run from_file --out from_file_again
   expect cmp from_file/thermo_series.csv from_file_again/thermo_series.csv
+  expect_exit 0 run seeded --set start.from=file --set 'start.file="start.csv"' --set run.duration=0.2 \
+    --restart from_file/checkpoint.h5
+  # A frame of another run is a start as well.
+  expect_exit 0 run seeded --set start.from=file --set 'start.file="../out/trajectory.0002.h5"' --out from_frame
 fi
-# A frame of another run is a start as well.
-expect_exit 0 run box --set start.from=file --set 'start.file="../out/trajectory.0002.h5"' --out from_frame
 
 # --- what is in the way ---
 cp -r out saved
@@ -197,9 +201,20 @@ expect test ! -e foreign.1
 mkdir -p vacant
 expect_exit 0 run box --out vacant --set output.pictures=false
 expect test ! -e vacant.1
+expect_error 3 run box --out "$(printf 'x%.0s' {1..300})" -- xxx --out
+if [ -w /dev/full ]; then
+  full() { "$@" >/dev/full; }
+  expect_error 3 full "$odpd" info -- 'standard output'
+  expect_error 3 full "$odpd" run box --out unseen -- 'standard output'
+  expect test -s unseen/summary.json
+fi
 if [ "$(id -u)" -ne 0 ]; then
   mkdir -p locked && chmod a-w locked
-  expect_error 3 run box --out locked/run -- locked permission
+  expect_error 3 run box --out locked/run -- locked/run permission
+  chmod a-rx locked
+  expect_error 3 run box --out locked/run -- locked/run Permission
+  expect_error 3 run box --out locked -- locked Permission
+  chmod a+rwx locked
 else
   skip 'a directory without permission: root may write everywhere'
 fi

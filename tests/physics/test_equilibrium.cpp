@@ -15,7 +15,8 @@ constexpr double exact_pressure = 39.9509;
 
 Results run_equilibrium(const std::string& integrator, double duration) {
   const std::string file = std::string(ODPD_SOURCE_DIR) + "/cases/04_equilibrium/case.toml";
-  const Config config = open_case(file, {"integrator.name=" + integrator, "run.duration=" + std::to_string(duration)});
+  const Config config = open_case(
+      file, {"integrator.name=" + integrator, "run.duration=" + std::to_string(duration)});
   Simulation<2> simulation(config, read_case(config, "04_equilibrium"));
   simulation.run([] { return false; }, [] {});
   return simulation.results();

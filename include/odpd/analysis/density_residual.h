@@ -15,11 +15,15 @@ template <int D>
 class DensityResidual : public Observer<D> {
  public:
   /// bins: D counts.
-  DensityResidual(ObserverSettings settings, std::array<std::int64_t, static_cast<std::size_t>(D)> bins,
+  DensityResidual(ObserverSettings settings,
+                  std::array<std::int64_t, static_cast<std::size_t>(D)> bins,
                   const Scene<D>& scene);
-  void measure(const Clock& clock, const Particles<D>& particles, const StepRecord<D>& record) override;
+  void measure(const Clock& clock, const Particles<D>& particles,
+               const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
-  std::vector<std::string> series_columns() const override { return {"paper_instant", "thesis_instant"}; }
+  std::vector<std::string> series_columns() const override {
+    return {"paper_instant", "thesis_instant"};
+  }
   std::vector<double> series_row() const override { return newest_; }
   void save(StateWriter& out) const override { average_.save(out, "average"); }
   void load(const StateReader& in) override { average_.load(in, "average"); }

@@ -12,7 +12,8 @@ namespace odpd {
 struct PolynomialFit {
   std::vector<double> coefficient;          ///< degree + 1 values
   std::vector<std::vector<double>> weight;  ///< [coefficient][point]
-  double reduced_chi_square = 0.0;          ///< over points - degree - 1 degrees of freedom; NaN when there are none
+  double reduced_chi_square =
+      0.0;  ///< over points - degree - 1 degrees of freedom; NaN when there are none
 
   double operator()(double x) const {
     double y = 0.0;

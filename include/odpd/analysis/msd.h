@@ -21,7 +21,8 @@ class Msd : public Observer<D> {
  public:
   /// lags are multiples of every * dt.
   Msd(ObserverSettings settings, MsdSettings msd, const Scene<D>& scene, double dt);
-  void measure(const Clock& clock, const Particles<D>& particles, const StepRecord<D>& record) override;
+  void measure(const Clock& clock, const Particles<D>& particles,
+               const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   std::vector<std::string> series_columns() const override;
   std::vector<double> series_row() const override { return newest_; }
@@ -30,9 +31,9 @@ class Msd : public Observer<D> {
 
  private:
   struct Origin {
-    std::int64_t sample = 0;        // index of the sample it was taken at
-    std::vector<double> position;   // unwrapped, by identity
-    std::vector<double> msd;        // [lag * species + A], filled as lags come
+    std::int64_t sample = 0;       // index of the sample it was taken at
+    std::vector<double> position;  // unwrapped, by identity
+    std::vector<double> msd;       // [lag * species + A], filled as lags come
   };
   void finish(const Origin& origin);
 

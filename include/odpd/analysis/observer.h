@@ -40,7 +40,8 @@ class Observer {
     return clock.measuring() && clock.measured_steps() % settings_.every == 0;
   }
   /// One sample from the step just done (clock.step already advanced past it).
-  virtual void measure(const Clock& clock, const Particles<D>& particles, const StepRecord<D>& record) = 0;
+  virtual void measure(const Clock& clock, const Particles<D>& particles,
+                       const StepRecord<D>& record) = 0;
   virtual void add_results(Results& results) const = 0;
 
   /// Columns after `time`, and the row of the newest sample (empty: nothing new to write).
@@ -57,7 +58,7 @@ class Observer {
 /// The observers of a case: its [[observe]] entries, and `thermo` and `msd` with their defaults when it names none of
 /// that kind. `scene` must outlive them. Throws ConfigError for unknown kinds and bad keys.
 template <int D>
-std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config, const Scene<D>& scene,
-                                                         const Clock& clock);
+std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
+                                                         const Scene<D>& scene, const Clock& clock);
 
 }  // namespace odpd

@@ -29,7 +29,8 @@ template <int D>
 class Profile : public Observer<D> {
  public:
   Profile(ObserverSettings settings, ProfileSettings profile, const Scene<D>& scene);
-  void measure(const Clock& clock, const Particles<D>& particles, const StepRecord<D>& record) override;
+  void measure(const Clock& clock, const Particles<D>& particles,
+               const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   std::vector<std::string> series_columns() const override;
   std::vector<double> series_row() const override;

@@ -14,7 +14,8 @@ template <int D>
 class Rdf : public Observer<D> {
  public:
   Rdf(ObserverSettings settings, double r_max, std::int64_t bins, const Scene<D>& scene);
-  void measure(const Clock& clock, const Particles<D>& particles, const StepRecord<D>& record) override;
+  void measure(const Clock& clock, const Particles<D>& particles,
+               const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   std::vector<std::string> series_columns() const override;
   std::vector<double> series_row() const override { return newest_; }

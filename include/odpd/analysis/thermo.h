@@ -17,7 +17,8 @@ template <int D>
 class Thermo : public Observer<D> {
  public:
   Thermo(ObserverSettings settings, const Scene<D>& scene);
-  void measure(const Clock& clock, const Particles<D>& particles, const StepRecord<D>& record) override;
+  void measure(const Clock& clock, const Particles<D>& particles,
+               const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   std::vector<std::string> series_columns() const override;
   std::vector<double> series_row() const override { return newest_; }
@@ -32,8 +33,8 @@ class Thermo : public Observer<D> {
 
 /// Conservative |F|^2 and Laplacian of U per particle at a stage, zero for particles of known velocity.
 template <int D>
-void configurational_terms(const Scene<D>& scene, const Particles<D>& particles, const Stage<D>& stage,
-                           std::vector<double>& force_squared, std::vector<double>& laplacian,
-                           double& wall_energy);
+void configurational_terms(const Scene<D>& scene, const Particles<D>& particles,
+                           const Stage<D>& stage, std::vector<double>& force_squared,
+                           std::vector<double>& laplacian, double& wall_energy);
 
 }  // namespace odpd

@@ -15,7 +15,8 @@ template <int D>
 class WallForce : public Observer<D> {
  public:
   WallForce(ObserverSettings settings, const Scene<D>& scene);
-  void measure(const Clock& clock, const Particles<D>& particles, const StepRecord<D>& record) override;
+  void measure(const Clock& clock, const Particles<D>& particles,
+               const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   std::vector<std::string> series_columns() const override;
   std::vector<double> series_row() const override { return newest_; }
@@ -25,8 +26,8 @@ class WallForce : public Observer<D> {
  private:
   std::string side(std::size_t wall) const;
   double area(std::size_t wall) const;
-  void add_stage(const Particles<D>& particles, const Stage<D>& stage, const std::vector<Vec<D>>& noise_force,
-                 double weight);
+  void add_stage(const Particles<D>& particles, const Stage<D>& stage,
+                 const std::vector<Vec<D>>& noise_force, double weight);
 
   const Scene<D>& scene_;
   BlockAverage average_;  // force per area, wall by wall, D components each; then shear stresses

@@ -27,13 +27,13 @@ struct CheckSettings {
   std::string name;
   std::string observable;
   double expected = 0.0;
-  double tolerance = 0.0;           ///< absolute; the check passes when |measured - expected| <= tolerance
+  double tolerance = 0.0;  ///< absolute; the check passes when |measured - expected| <= tolerance
   double standard_error_below = 0;  ///< also asked of the standard error, where > 0
   std::string source;
 };
 
 struct CaseSettings {
-  std::string name;                 ///< of the case directory or file
+  std::string name;  ///< of the case directory or file
   std::string title;
   int dimension = 2;
   std::string integrator;

@@ -18,8 +18,8 @@ struct CheckOutcome {
 };
 
 /// A check whose observable no observer gave fails, naming those there are.
-std::vector<CheckOutcome> evaluate_checks(const std::vector<CheckSettings>& checks, const Results& results,
-                                          std::int64_t alarm_crossings);
+std::vector<CheckOutcome> evaluate_checks(const std::vector<CheckSettings>& checks,
+                                          const Results& results, std::int64_t alarm_crossings);
 
 /// What a run was, beside the simulation itself.
 struct RunFacts {

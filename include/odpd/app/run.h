@@ -8,7 +8,7 @@ namespace odpd {
 
 struct RunOptions {
   std::filesystem::path case_path;
-  std::filesystem::path out;      ///< empty: runs/<case>, or the checkpoint's directory at a restart
+  std::filesystem::path out;  ///< empty: runs/<case>, or the checkpoint's directory at a restart
   std::vector<std::string> overrides;
   int threads = 0;                ///< 0: chosen by the number of particles
   std::filesystem::path restart;  ///< checkpoint to continue from; empty: a new run

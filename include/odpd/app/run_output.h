@@ -53,7 +53,8 @@ class RunOutput {
   const Config& config_;
   Simulation<D>& simulation_;
   TrajectorySegments trajectory_;
-  std::vector<std::unique_ptr<SeriesFile>> series_;  // one per observer, null where none was asked for
+  std::vector<std::unique_ptr<SeriesFile>>
+      series_;  // one per observer, null where none was asked for
   std::vector<std::pair<double, std::string>> vtk_frames_;
 };
 

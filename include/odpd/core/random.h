@@ -12,11 +12,12 @@ namespace odpd {
 
 /// What a number is for. Two uses never share a stream, so adding one changes no other.
 enum class Stream : std::uint64_t {
-  pair_noise = 1,         ///< F_B of an edge: counter (step, 0 along / 1 across, lower id, higher id)
-  start_positions = 2,    ///< random filling: counter (0, attempt, id, 0)
-  start_species = 3,      ///< which particle gets which species: counter (0, 0, id, 0)
-  overlap_direction = 4,  ///< fixed direction of an edge at r = 0: counter (0, 0, lower id, higher id)
-  probe = 5,              ///< random vectors of tests and of `compare`: counter (k, 0, i, 0)
+  pair_noise = 1,       ///< F_B of an edge: counter (step, 0 along / 1 across, lower id, higher id)
+  start_positions = 2,  ///< random filling: counter (0, attempt, id, 0)
+  start_species = 3,    ///< which particle gets which species: counter (0, 0, id, 0)
+  overlap_direction =
+      4,      ///< fixed direction of an edge at r = 0: counter (0, 0, lower id, higher id)
+  probe = 5,  ///< random vectors of tests and of `compare`: counter (k, 0, i, 0)
 };
 
 /// Uniform and normal numbers of one seed and stream.

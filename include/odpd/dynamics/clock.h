@@ -5,10 +5,10 @@
 namespace odpd {
 
 struct Clock {
-  double dt = 0.005;                    ///< time step
-  std::int64_t step = 0;                ///< steps done
-  std::int64_t equilibration_steps = 0; ///< nothing is measured during these
-  std::int64_t total_steps = 0;         ///< equilibration included
+  double dt = 0.005;                     ///< time step
+  std::int64_t step = 0;                 ///< steps done
+  std::int64_t equilibration_steps = 0;  ///< nothing is measured during these
+  std::int64_t total_steps = 0;          ///< equilibration included
 
   double time() const { return static_cast<double>(step) * dt; }
   bool finished() const { return step >= total_steps; }

@@ -53,7 +53,8 @@ class Dynamics {
   }
   /// Brings memory into spatial order when this step is due for it (a function of the step number alone).
   void reorder_if_due(std::int64_t step);
-  /// Fills position, edges and forces of a stage at the given positions and time.
+  /// Fills position, edges and forces of a stage at the given positions and time. Throws SolverError for a position
+  /// that is not finite.
   void evaluate(std::span<const Vec<D>> positions, double time, Stage<D>& stage);
   /// Draws F_B of the stage's edges and returns xi = P^T F_B as unknowns (zero, and nothing drawn, at kT = 0).
   std::vector<double> draw_noise(const Stage<D>& stage, std::int64_t step, double dt,
@@ -62,9 +63,11 @@ class Dynamics {
   std::vector<double> right_hand_side(Stage<D>& stage, const std::vector<double>& xi);
   /// Solves for the stage's velocities. `guess` in, answer out (unknowns). Throws SolverError when the solver did
   /// not converge or a velocity is not finite.
-  void solve(Stage<D>& stage, const std::vector<double>& xi, std::vector<double>& guess, std::int64_t step);
-  /// position + dt velocity, wrapped.
-  std::vector<Vec<D>> displaced(const std::vector<Vec<D>>& velocity, double dt) const;
+  void solve(Stage<D>& stage, const std::vector<double>& xi, std::vector<double>& guess,
+             std::int64_t step);
+  /// position + dt velocity, wrapped; a particle that moves further than half the box throws, as in `move`.
+  std::vector<Vec<D>> displaced(const std::vector<Vec<D>>& velocity, double dt,
+                                std::int64_t step) const;
   /// Moves the particles by dt velocity and remembers it; returns the mirror's catches. Throws SolverError when a
   /// particle moves further than half the box in one step.
   std::int64_t move(const std::vector<Vec<D>>& velocity, double dt, std::int64_t step);
@@ -79,6 +82,8 @@ class Dynamics {
   const SolverStatistics& statistics() const { return statistics_; }
 
  private:
+  void check_paths(const std::vector<Vec<D>>& velocity, double dt, std::int64_t step) const;
+
   const Box<D> box_;
   Particles<D>& particles_;
   const PairModel<D>& model_;

@@ -16,8 +16,10 @@ class Euler : public Integrator<D> {
   std::string name() const override { return "euler"; }
   int stages() const override { return 1; }
   std::string warning() const override {
-    return "integrator 'euler' leaves out the drift kT div R^-1 and is biased at every dt (energy about -1 %, "
-           "configurational temperature about 0.82 at the standard 2D state): use it to reproduce the paper only";
+    return "integrator 'euler' leaves out the drift kT div R^-1 and is biased at every dt (energy "
+           "about -1 %, "
+           "configurational temperature about 0.82 at the standard 2D state): use it to reproduce "
+           "the paper only";
   }
   const StepRecord<D>& step(Dynamics<D>& dynamics, const Clock& clock) override;
 

@@ -12,11 +12,11 @@ namespace odpd {
 template <int D>
 struct Stage {
   double time = 0.0;
-  std::vector<Vec<D>> position;    ///< inside the box along periodic directions
-  PairNetwork<D> network;          ///< edges at `position`
+  std::vector<Vec<D>> position;         ///< inside the box along periodic directions
+  PairNetwork<D> network;               ///< edges at `position`
   std::vector<Vec<D>> potential_force;  ///< conservative pair forces and wall potentials
   std::vector<Vec<D>> driving_force;    ///< body force
-  std::vector<Vec<D>> velocity;    ///< solved (free) or prescribed (known)
+  std::vector<Vec<D>> velocity;         ///< solved (free) or prescribed (known)
   SolveReport report;
 };
 
@@ -24,12 +24,12 @@ template <int D>
 struct StepRecord {
   std::int64_t step = 0;  ///< index of the step, counted from 0
   double dt = 0.0;
-  Stage<D> start;                   ///< at the step's start: r, v1
-  bool has_corrector = false;       ///< schemes with one solve have no second stage
-  Stage<D> corrector;               ///< at r* = r + dt v1: v2
-  std::vector<Vec<D>> edge_noise;   ///< F_B on i per edge of start.network; empty at kT = 0
-  std::vector<Vec<D>> v_mid;        ///< velocity that moved each particle: the mean of the stages
-  std::int64_t alarm_crossings = 0; ///< particles the mirror had to catch in this step
+  Stage<D> start;                    ///< at the step's start: r, v1
+  bool has_corrector = false;        ///< schemes with one solve have no second stage
+  Stage<D> corrector;                ///< at r* = r + dt v1: v2
+  std::vector<Vec<D>> edge_noise;    ///< F_B on i per edge of start.network; empty at kT = 0
+  std::vector<Vec<D>> v_mid;         ///< velocity that moved each particle: the mean of the stages
+  std::int64_t alarm_crossings = 0;  ///< particles the mirror had to catch in this step
 };
 
 }  // namespace odpd

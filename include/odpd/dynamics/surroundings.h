@@ -14,13 +14,15 @@ class Surroundings {
  public:
   virtual ~Surroundings() = default;
   /// Adds the forces of potentials (smooth walls) on free particles.
-  virtual void add_potential_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
+  virtual void add_potential_forces(const Particles<D>& particles,
+                                    std::span<const Vec<D>> positions,
                                     std::vector<Vec<D>>& force) const = 0;
   /// Energy of the potentials, and their Laplacian added per particle (for the configurational temperature).
   virtual double potential_energy(const Particles<D>& particles, std::span<const Vec<D>> positions,
                                   std::vector<double>& laplacian) const = 0;
   /// Adds driving forces (body force) at time t on free particles.
-  virtual void add_driving_forces(const Particles<D>& particles, double t, std::vector<Vec<D>>& force) const = 0;
+  virtual void add_driving_forces(const Particles<D>& particles, double t,
+                                  std::vector<Vec<D>>& force) const = 0;
   /// Velocity at time t of the particles of `group` >= 1.
   virtual Vec<D> known_velocity(std::int32_t group, double t) const = 0;
   /// Mirrors a free particle that left the box in a bounded direction back into it; true when it had.
@@ -31,8 +33,10 @@ class Surroundings {
 template <int D>
 class NoSurroundings : public Surroundings<D> {
  public:
-  void add_potential_forces(const Particles<D>&, std::span<const Vec<D>>, std::vector<Vec<D>>&) const override {}
-  double potential_energy(const Particles<D>&, std::span<const Vec<D>>, std::vector<double>&) const override {
+  void add_potential_forces(const Particles<D>&, std::span<const Vec<D>>,
+                            std::vector<Vec<D>>&) const override {}
+  double potential_energy(const Particles<D>&, std::span<const Vec<D>>,
+                          std::vector<double>&) const override {
     return 0.0;
   }
   void add_driving_forces(const Particles<D>&, double, std::vector<Vec<D>>&) const override {}

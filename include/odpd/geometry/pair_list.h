@@ -70,7 +70,8 @@ class PairList {
 /// Order of the particles along a path through cells of the given width that keeps neighbours close in memory:
 /// result[k] is the index of the particle to come k-th. Ties by `id`, so the order is a function of the state.
 template <int D>
-std::vector<std::int32_t> spatial_order(const Box<D>& box, double width, std::span<const Vec<D>> positions,
+std::vector<std::int32_t> spatial_order(const Box<D>& box, double width,
+                                        std::span<const Vec<D>> positions,
                                         std::span<const std::int64_t> id);
 
 }  // namespace odpd

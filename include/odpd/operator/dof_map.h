@@ -26,7 +26,8 @@ class DofMap {
   /// P^T f: from one vector per particle to unknowns.
   void gather(std::span<const Vec<D>> particle_values, std::vector<double>& q) const;
   /// P q + known, with `known` read at the particles without unknowns.
-  void scatter(std::span<const double> q, std::span<const Vec<D>> known, std::vector<Vec<D>>& velocity) const;
+  void scatter(std::span<const double> q, std::span<const Vec<D>> known,
+               std::vector<Vec<D>>& velocity) const;
 
  private:
   std::vector<std::int32_t> node_;

@@ -58,13 +58,13 @@ class Resistance : public System {
   Box<D> box_;
   bool hold_;
   std::int64_t nodes_ = 0;
-  std::vector<std::int64_t> start_;     // rows of entries_, both directions stored
-  std::vector<Entry> entries_;          // coupling to free nodes, then to known particles (node = -1)
+  std::vector<std::int64_t> start_;  // rows of entries_, both directions stored
+  std::vector<Entry> entries_;       // coupling to free nodes, then to known particles (node = -1)
   double shift_ = 0.0;
   bool translations_are_null_ = false;
   std::vector<double> positions_;
   std::uint64_t generation_ = 0;
-  mutable BlockCsr matrix_;             // made on demand
+  mutable BlockCsr matrix_;  // made on demand
   mutable std::uint64_t matrix_generation_ = 0;
 };
 

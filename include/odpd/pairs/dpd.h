@@ -38,7 +38,9 @@ class DpdModel : public PairModel<D> {
   DpdModel(int species, std::vector<DpdParameters> parameters);
 
   double cutoff() const override { return cutoff_; }
-  PairTerms pair(double r, Site site_i, Site site_j) const override { return terms(r, site_i, site_j); }
+  PairTerms pair(double r, Site site_i, Site site_j) const override {
+    return terms(r, site_i, site_j);
+  }
   void write_edges(const PairList<D>& list, const Box<D>& box, std::span<const Vec<D>> positions,
                    const Particles<D>& particles, PairNetwork<D>& network) const override;
   bool conservative() const override { return conservative_; }

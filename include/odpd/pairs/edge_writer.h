@@ -51,7 +51,8 @@ void write_pair_edges(const Terms& terms, double cutoff, const PairList<D>& list
       network.i[k] = static_cast<std::int32_t>(row);
       network.j[k] = partner;
       network.r[k] = r;
-      network.e[k] = r > 0.0 ? (1.0 / r) * d : overlap_direction<D>(particles.id[p], particles.id[q]);
+      network.e[k] =
+          r > 0.0 ? (1.0 / r) * d : overlap_direction<D>(particles.id[p], particles.id[q]);
       const PairTerms t = terms(r, Site{particles.species[p]}, Site{particles.species[q]});
       network.u[k] = t.u;
       network.f_c[k] = t.f_c;

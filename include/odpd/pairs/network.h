@@ -29,10 +29,10 @@ template <int D>
 struct PairNetwork {
   std::int64_t particles = 0;
   std::vector<std::int32_t> i, j;
-  std::vector<Vec<D>> e;     ///< unit vector from j to i
-  std::vector<double> r;     ///< distance
+  std::vector<Vec<D>> e;  ///< unit vector from j to i
+  std::vector<double> r;  ///< distance
   std::vector<double> u, f_c, k_c, zeta_par, zeta_perp, kT;
-  bool transverse = false;   ///< some zeta_perp is not zero
+  bool transverse = false;  ///< some zeta_perp is not zero
 
   // The edges of each particle, in fixed order: edge[start[p]] .. edge[start[p+1]-1].
   std::vector<std::int64_t> start;

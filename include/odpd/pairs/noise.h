@@ -14,7 +14,7 @@ namespace odpd {
 
 /// Force on i of every edge (the force on j is its negative), integrated over dt and divided by it.
 template <int D>
-void draw_edge_noise(const PairNetwork<D>& network, const Particles<D>& particles, std::uint64_t seed,
-                     std::uint64_t step, double dt, std::vector<Vec<D>>& force);
+void draw_edge_noise(const PairNetwork<D>& network, const Particles<D>& particles,
+                     std::uint64_t seed, std::uint64_t step, double dt, std::vector<Vec<D>>& force);
 
 }  // namespace odpd

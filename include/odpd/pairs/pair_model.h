@@ -4,8 +4,8 @@
 #include <span>
 
 #include "odpd/geometry/pair_list.h"
-#include "odpd/particles/particles.h"
 #include "odpd/pairs/network.h"
+#include "odpd/particles/particles.h"
 
 namespace odpd {
 
@@ -23,8 +23,9 @@ class PairModel {
   /// Terms of one pair at distance r >= 0; all zero beyond the cutoff.
   virtual PairTerms pair(double r, Site site_i, Site site_j) const = 0;
   /// Replaces `network` by the edges of all pairs of the list closer than the cutoff at these positions.
-  virtual void write_edges(const PairList<D>& list, const Box<D>& box, std::span<const Vec<D>> positions,
-                           const Particles<D>& particles, PairNetwork<D>& network) const = 0;
+  virtual void write_edges(const PairList<D>& list, const Box<D>& box,
+                           std::span<const Vec<D>> positions, const Particles<D>& particles,
+                           PairNetwork<D>& network) const = 0;
   /// Some pair has a conservative force (a > 0); otherwise energy and pressure are those of an ideal gas.
   virtual bool conservative() const = 0;
   /// Some pair has kT > 0.

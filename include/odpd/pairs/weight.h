@@ -19,10 +19,14 @@ class PowerWeight {
   /// x^p for x = 1 - r/r_c in (0, 1].
   double operator()(double x) const {
     switch (kind_) {
-      case Kind::half: return std::sqrt(x);
-      case Kind::one: return x;
-      case Kind::two: return x * x;
-      case Kind::any: break;
+      case Kind::half:
+        return std::sqrt(x);
+      case Kind::one:
+        return x;
+      case Kind::two:
+        return x * x;
+      case Kind::any:
+        break;
     }
     return std::pow(x, exponent_);
   }

@@ -20,10 +20,11 @@ class Particles {
   Particles(const Particles&) = delete;  // the field table points into this object
   Particles& operator=(const Particles&) = delete;
 
-  std::vector<Vec<D>> position;       ///< inside the box along periodic directions; length
-  std::vector<Image> image;           ///< box crossings: unwrapped = position + image * size
-  std::vector<Vec<D>> velocity;       ///< v_mid of the last step (prescribed for walls); length/time
-  std::vector<std::int64_t> id;       ///< persistent identity, 0, 1, ...; survives reordering and restart
+  std::vector<Vec<D>> position;  ///< inside the box along periodic directions; length
+  std::vector<Image> image;      ///< box crossings: unwrapped = position + image * size
+  std::vector<Vec<D>> velocity;  ///< v_mid of the last step (prescribed for walls); length/time
+  std::vector<std::int64_t>
+      id;  ///< persistent identity, 0, 1, ...; survives reordering and restart
   std::vector<std::int32_t> species;  ///< index into the scene's species
   std::vector<std::int32_t> group;    ///< 0: free (fluid); k >= 1: moves with wall k-1 of the scene
 

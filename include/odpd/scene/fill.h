@@ -15,11 +15,12 @@ void place_walls(const SceneSettings<D>& settings, Particles<D>& particles);
 
 /// Adds the free particles between `low` and `high` (or at the start file's positions).
 template <int D>
-void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<D>& high, Particles<D>& particles);
+void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<D>& high,
+                 Particles<D>& particles);
 
 /// `sweeps` times: every free particle moves along its force F by |F| / (sum of its stiffnesses), at most r_c/20.
 template <int D>
-void relax(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& surroundings, std::int64_t sweeps,
-           Particles<D>& particles);
+void relax(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& surroundings,
+           std::int64_t sweeps, Particles<D>& particles);
 
 }  // namespace odpd

@@ -12,24 +12,24 @@ namespace odpd {
 
 struct SpeciesSettings {
   std::string name = "fluid";
-  double fraction = 1.0;     ///< of the fluid's particles; used where count < 0
-  std::int64_t count = -1;   ///< exact number of fluid particles; -1: by fraction
+  double fraction = 1.0;    ///< of the fluid's particles; used where count < 0
+  std::int64_t count = -1;  ///< exact number of fluid particles; -1: by fraction
 };
 
 /// A sheet of frozen particles parallel to a wall's surface.
 struct WallLayer {
-  double depth = 0.0;        ///< behind the surface (length)
-  std::int64_t count = 0;    ///< particles, evenly spaced (2D); 0: by spacing
-  double spacing = 0.0;      ///< distance between them, rounded to fit the box (length)
+  double depth = 0.0;      ///< behind the surface (length)
+  std::int64_t count = 0;  ///< particles, evenly spaced (2D); 0: by spacing
+  double spacing = 0.0;    ///< distance between them, rounded to fit the box (length)
 };
 
 /// One flat wall at an end of a bounded direction.
 template <int D>
 struct WallSettings {
-  int axis = 1;              ///< direction of the normal
-  bool high = false;         ///< at the upper end
-  double thickness = 1.0;    ///< from the end of the box to the surface (length)
-  Vec<D> velocity{};         ///< tangential (length/time)
+  int axis = 1;            ///< direction of the normal
+  bool high = false;       ///< at the upper end
+  double thickness = 1.0;  ///< from the end of the box to the surface (length)
+  Vec<D> velocity{};       ///< tangential (length/time)
   std::vector<WallLayer> layers;
   std::int32_t species = 0;
   /// Smooth potential u = stiffness/2 h^2 of a fluid particle a depth h > 0 behind the surface (force/length).
@@ -45,14 +45,14 @@ struct SceneSettings {
   std::vector<SpeciesSettings> species{SpeciesSettings{}};
   std::vector<DpdParameters> pairs{DpdParameters{}};  ///< [A * species.size() + B]
   std::int64_t count = 0;                             ///< fluid particles; 0: by density
-  double density = 4.0;                               ///< fluid particles per volume between the walls
+  double density = 4.0;  ///< fluid particles per volume between the walls
   std::vector<WallSettings<D>> walls;
-  Vec<D> body_force{};                                ///< on every free particle (force)
+  Vec<D> body_force{};  ///< on every free particle (force)
   StartKind start = StartKind::random;
-  std::string start_file;                             ///< for StartKind::file, resolved
-  std::vector<Vec<D>> start_positions;                ///< contents of the start file, filled by io's caller
-  std::vector<std::int32_t> start_species;            ///< one per start position
-  std::int64_t relax_sweeps = 100;                    ///< of overlap removal before the run
+  std::string start_file;                   ///< for StartKind::file, resolved
+  std::vector<Vec<D>> start_positions;      ///< contents of the start file, filled by io's caller
+  std::vector<std::int32_t> start_species;  ///< one per start position
+  std::int64_t relax_sweeps = 100;          ///< of overlap removal before the run
 
   int wall_at(int axis, bool high) const;  ///< index into walls, -1 when there is none
 };
@@ -63,7 +63,7 @@ template <int D>
 SceneSettings<D> read_scene_settings(const Config& config);
 
 /// Index of a species name; ConfigError at `key` listing the names.
-std::int32_t species_index(const std::vector<SpeciesSettings>& species, const Config& where, const std::string& key,
-                           const std::string& name);
+std::int32_t species_index(const std::vector<SpeciesSettings>& species, const Config& where,
+                           const std::string& key, const std::string& name);
 
 }  // namespace odpd

@@ -20,7 +20,7 @@ namespace odpd {
 
 /// When an iteration stops.
 enum class Stopping {
-  residual,  ///< |Pi (b - A x)| <= tolerance |Pi b|, the true residual (the default)
+  residual,   ///< |Pi (b - A x)| <= tolerance |Pi b|, the true residual (the default)
   increment,  ///< |x_l - x_{l-1}| < tolerance |x_l|, Picard only: lax (ibid., eq. 27)
 };
 

@@ -1,0 +1,120 @@
+// Kernels of a massless step, on equilibrated-like random fluids (n = 4, standard parameters): ns per particle.
+//   build/release/bench/odpd_bench --benchmark_filter=Apply
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+#include "odpd/dynamics/dynamics.h"
+#include "odpd/pairs/noise.h"
+#include "odpd/scene/scene.h"
+
+namespace odpd {
+namespace {
+
+template <int D>
+struct Fluid {
+  explicit Fluid(std::int64_t particles)
+      : scene(settings(particles)),
+        list(scene.box(), scene.model().cutoff(), 0.4),
+        dofs(scene.particles()),
+        resistance(scene.box()) {
+    scene.particles().reorder(
+        spatial_order<D>(scene.box(), 1.0, scene.particles().position, scene.particles().id));
+    edges();
+    resistance.rebuild(network, dofs, scene.particles(), scene.particles().position, 0.0);
+  }
+  static SceneSettings<D> settings(std::int64_t particles) {
+    SceneSettings<D> s;
+    const double edge = std::pow(static_cast<double>(particles) / 4.0, 1.0 / D);
+    for (int c = 0; c < D; ++c) {
+      s.box.size[c] = edge;
+      s.box.periodic[static_cast<std::size_t>(c)] = true;
+    }
+    s.count = particles;
+    return s;
+  }
+  void edges() {
+    list.update(scene.particles().position);
+    scene.model().write_edges(list, scene.box(), scene.particles().position, scene.particles(),
+                              network);
+  }
+
+  Scene<D> scene;
+  PairList<D> list;
+  PairNetwork<D> network;
+  DofMap<D> dofs;
+  Resistance<D> resistance;
+};
+
+void per_particle(benchmark::State& state) {
+  state.counters["ns/particle"] = benchmark::Counter(
+      static_cast<double>(state.range(0)) * 1e-9,
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+template <int D>
+void PairSearch(benchmark::State& state) {
+  Fluid<D> fluid(state.range(0));
+  for (auto _ : state) {
+    fluid.list.invalidate();
+    fluid.list.update(fluid.scene.particles().position);
+  }
+  per_particle(state);
+}
+
+template <int D>
+void Edges(benchmark::State& state) {
+  Fluid<D> fluid(state.range(0));
+  for (auto _ : state) fluid.edges();
+  per_particle(state);
+}
+
+template <int D>
+void Noise(benchmark::State& state) {
+  Fluid<D> fluid(state.range(0));
+  std::vector<Vec<D>> force;
+  std::uint64_t step = 0;
+  for (auto _ : state)
+    draw_edge_noise(fluid.network, fluid.scene.particles(), 1, ++step, 0.005, force);
+  per_particle(state);
+}
+
+template <int D>
+void Apply(benchmark::State& state) {
+  const Fluid<D> fluid(state.range(0));
+  std::vector<double> x(static_cast<std::size_t>(fluid.resistance.size()));
+  std::vector<double> y(x.size());
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] = std::sin(static_cast<double>(k));
+  for (auto _ : state) fluid.resistance.apply(x, y);
+  per_particle(state);
+}
+
+template <int D>
+void Solve(benchmark::State& state) {
+  const Fluid<D> fluid(state.range(0));
+  const auto solver = make_solver({.name = "pcg", .tolerance = 1e-5});
+  std::vector<double> b(static_cast<std::size_t>(fluid.resistance.size()));
+  for (std::size_t k = 0; k < b.size(); ++k) b[k] = std::sin(static_cast<double>(k));
+  for (auto _ : state) {
+    std::vector<double> x(b.size(), 0.0);
+    solver->bind(fluid.resistance);
+    state.counters["iterations"] = static_cast<double>(solver->solve(b, x).iterations);
+  }
+  per_particle(state);
+}
+
+BENCHMARK(PairSearch<2>)->Arg(540)->Arg(10000);
+BENCHMARK(PairSearch<3>)->Arg(540)->Arg(10000);
+BENCHMARK(Edges<2>)->Arg(540)->Arg(10000);
+BENCHMARK(Edges<3>)->Arg(540)->Arg(10000);
+BENCHMARK(Noise<2>)->Arg(10000);
+BENCHMARK(Noise<3>)->Arg(10000);
+BENCHMARK(Apply<2>)->Arg(540)->Arg(10000);
+BENCHMARK(Apply<3>)->Arg(540)->Arg(10000);
+BENCHMARK(Solve<2>)->Arg(540)->Arg(10000);
+BENCHMARK(Solve<3>)->Arg(540)->Arg(10000);
+
+}  // namespace
+}  // namespace odpd
+
+BENCHMARK_MAIN();

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# `odpd run --dry-run`: what would be modelled, how large it is and how long it takes; nothing is written.
+source "$(dirname "$0")/lib.sh" "$@"
+
+write_periodic box
+write_walled channel
+listing() { find . -printf '%p %s %T@\n' | sort; }
+before=$(listing)
+
+expect_exit 0 "$odpd" run box --dry-run
+expect_text "$out_text" 'a small periodic box' '64 free particles' '0 of known velocity' edges '40 steps' \
+  '10 of them equilibration' 'dt = 0.005' 'solver pcg' MiB 'ms per stage' \
+  '+ conservative force' '+ random force' '- inertia' '- walls' '+ second solve per step' '- assembled matrix'
+expect test ! -s "$err_text"
+# About 9 to 14 neighbours within the cutoff at this density, two ends to an edge.
+edges=$(grep -o '[0-9]* edges' "$out_text" | cut -d' ' -f1)
+expect test "$edges" -gt $((64 * 3)) -a "$edges" -lt $((64 * 14))
+
+expect_exit 0 "$odpd" run channel --dry-run --set fluid.kT=0.0 --set fluid.a=0.0 --set solver.name=cholmod \
+  --set integrator.name=euler --set 'body_force.force=[0.5, 0.0]'
+expect_text "$out_text" '48 free particles' '36 of known velocity' '- conservative force' '- random force' '+ walls' \
+  '2 [[wall]]' '+ body force' '- second solve per step' '+ assembled matrix'
+
+# Every case that comes with the program is in order.
+for case in "$source_root"/cases/*/case.toml; do
+  checks=$((checks + 1))
+  timeout 60 "$odpd" run "$case" --dry-run >"$out_text" 2>"$err_text" && continue
+  fail "--dry-run of $case"
+  show_texts
+done
+
+# Errors come as they would in the run, and --out and --threads change nothing.
+expect_error 1 "$odpd" run box --dry-run --set fluid.b=1.0 -- '--set fluid.b'
+expect_error 2 "$odpd" run box --dry-run --set solver.max_iterations=1 -- solver.max_iterations
+expect_exit 0 "$odpd" run box --dry-run --out somewhere --threads 2
+expect_text "$out_text" '64 free particles' '2 thread(s)'
+expect test "$before" = "$(listing)"
+finish

@@ -1,0 +1,192 @@
+// One step: balance of forces, known velocities, conservation, order of the schemes, and how a step fails.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "odpd/core/error.h"
+#include "odpd/core/parallel.h"
+#include "odpd/dynamics/dynamics.h"
+#include "odpd/dynamics/integrator.h"
+#include "odpd/operator/edge_sums.h"
+#include "odpd/pairs/dpd.h"
+
+namespace odpd {
+namespace {
+
+// A periodic box of fluid; `walled` adds a row of particles that move with velocity (0.5, 0) along x.
+class MovingRow : public NoSurroundings<2> {
+ public:
+  Vec<2> known_velocity(std::int32_t, double) const override { return {{0.5, 0.0}}; }
+};
+
+struct Toy {
+  explicit Toy(double kT, bool walled = false,
+               SolverOptions solver = {.name = "pcg", .tolerance = 1e-10})
+      : model(1, {DpdParameters{.kT = kT}}) {
+    for (int x = 0; x < 10; ++x)
+      for (int y = 0; y < 10; ++y)
+        particles.add(
+            {{0.5 * x + 0.1 * std::sin(3.0 * x + y), 0.5 * y + 0.1 * std::cos(2.0 * x - y)}}, 0, 0);
+    for (Vec<2>& r : particles.position) box.wrap(r);
+    if (walled)
+      for (int x = 0; x < 10; ++x) particles.add({{0.5 * x, 2.5}}, 0, 1);
+    dynamics = std::make_unique<Dynamics<2>>(box, particles, model, row, make_solver(solver),
+                                             DynamicsSettings{});
+  }
+  void run(const std::string& scheme, double dt, std::int64_t steps) {
+    const auto integrator = make_integrator<2>(scheme);
+    for (Clock clock{.dt = dt, .total_steps = steps}; !clock.finished(); clock.advance())
+      integrator->step(*dynamics, clock);
+  }
+
+  Box<2> box{{{5.0, 5.0}}, {true, true}};
+  Particles<2> particles;
+  DpdModel<2> model;
+  MovingRow row;
+  std::unique_ptr<Dynamics<2>> dynamics;
+};
+
+TEST(Dynamics, ForcesBalanceOnEveryFreeParticle) {
+  Toy toy(1.0, true);
+  const auto integrator = make_integrator<2>("trapezoidal");
+  const StepRecord<2>& record =
+      integrator->step(*toy.dynamics, Clock{.dt = 0.005, .total_steps = 1});
+  for (const Stage<2>* stage : {&record.start, &record.corrector}) {
+    std::vector<Vec<2>> force(stage->position.size());
+    // The same noise in both stages: F_B of the step's start.
+    add_edge_forces<2>(record.start.network, record.edge_noise, force);
+    add_conservative_forces(stage->network, force);
+    double scale = 0.0;
+    for (const Vec<2>& f : force) scale = std::max(scale, norm(f));
+    add_friction_forces<2>(stage->network, stage->velocity, force);
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      if (toy.particles.is_free(i)) {
+        EXPECT_LT(norm(force[i]), 1e-8 * scale) << "particle " << i;
+      } else {
+        EXPECT_EQ(stage->velocity[i][0], 0.5);
+      }
+    }
+  }
+}
+
+TEST(Dynamics, KnownParticlesMoveAsPrescribed) {
+  Toy toy(1.0, true);
+  const std::vector<Vec<2>> before = toy.particles.position;
+  const auto integrator = make_integrator<2>("trapezoidal");
+  integrator->step(*toy.dynamics, Clock{.dt = 0.01, .step = 1, .total_steps = 2});
+  for (std::size_t i = 100; i < 110; ++i) {
+    EXPECT_NEAR(toy.box.separation(toy.particles.position[i], before[i])[0], 0.005, 1e-14);
+    EXPECT_EQ(toy.particles.position[i][1], 2.5);
+  }
+}
+
+TEST(Dynamics, CentreOfMassRestsInAPeriodicBox) {
+  Toy toy(1.0);
+  toy.run("trapezoidal", 0.005, 20);
+  Vec<2> moved{};
+  for (std::size_t i = 0; i < toy.particles.position.size(); ++i)
+    moved += toy.particles.velocity[i];
+  EXPECT_LT(norm(moved), 1e-10);
+}
+
+// Without noise the schemes are the explicit trapezoidal and Euler rules: errors fall with dt^2 and dt.
+TEST(Dynamics, OrdersWithoutNoise) {
+  const auto end_of = [](const std::string& scheme, std::int64_t steps) {
+    Toy toy(0.0);
+    toy.run(scheme, 0.08 / static_cast<double>(steps), steps);
+    std::vector<Vec<2>> by_id;
+    for (const std::int32_t i : toy.particles.index_of_id())
+      by_id.push_back(toy.particles.position[static_cast<std::size_t>(i)]);
+    return by_id;
+  };
+  const std::vector<Vec<2>> exact = end_of("trapezoidal", 512);
+  const auto error = [&](const std::string& scheme, std::int64_t steps) {
+    const Box<2> box{{{5.0, 5.0}}, {true, true}};
+    const std::vector<Vec<2>> end = end_of(scheme, steps);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < end.size(); ++i) {
+      const Vec<2> d = box.separation(end[i], exact[i]);
+      sum += dot(d, d);
+    }
+    return std::sqrt(sum);
+  };
+  // w_D has no smooth derivative at the cutoff, which keeps the ratios a little below 4 and 2.
+  EXPECT_GT(error("trapezoidal", 8) / error("trapezoidal", 16), 3.0);
+  const double euler = error("euler", 16) / error("euler", 32);
+  EXPECT_GT(euler, 1.7);
+  EXPECT_LT(euler, 2.4);
+}
+
+TEST(Dynamics, SameBitsOnAnyThreadCount) {
+  const auto end_of = [](int count) {
+    set_threads(count, 0);
+    Toy toy(1.0, true);
+    toy.run("trapezoidal", 0.005, 10);
+    set_threads(1, 0);
+    return toy.particles.position;
+  };
+  const auto one = end_of(1);
+  EXPECT_EQ(one, end_of(2));
+  EXPECT_EQ(one, end_of(3));
+}
+
+template <class Action>
+std::string message_of(const Action& action) {
+  try {
+    action();
+  } catch (const SolverError& e) {
+    return e.what();
+  }
+  return "no SolverError";
+}
+
+TEST(Dynamics, PositionThatIsNotANumberIsNamed) {
+  Toy toy(1.0);
+  toy.particles.position[7][1] = std::numeric_limits<double>::quiet_NaN();
+  const std::string message = message_of([&] { toy.run("trapezoidal", 0.005, 1); });
+  EXPECT_NE(message.find("particle 7"), std::string::npos) << message;
+  EXPECT_NE(message.find("checkpoint"), std::string::npos) << message;
+}
+
+TEST(Dynamics, BlowUpIsNamed) {
+  Toy toy(1.0);
+  const std::string message = message_of([&] { toy.run("trapezoidal", 50.0, 5); });
+  EXPECT_NE(message.find("blown up"), std::string::npos) << message;
+  EXPECT_NE(message.find("integrator.dt"), std::string::npos) << message;
+}
+
+TEST(Dynamics, SolverThatDoesNotConvergeStopsTheStep) {
+  Toy toy(1.0, true, {.name = "picard", .tolerance = 1e-10, .max_iterations = 3});
+  const std::string message = message_of([&] { toy.run("euler", 0.005, 1); });
+  EXPECT_NE(message.find("step 0"), std::string::npos) << message;
+  EXPECT_NE(message.find("max_iterations"), std::string::npos) << message;
+}
+
+TEST(Dynamics, HoldingTheCentreOfMass) {
+  Toy toy(1.0, true);
+  DynamicsSettings settings;
+  settings.hold_centre_of_mass = true;
+  toy.dynamics =
+      std::make_unique<Dynamics<2>>(toy.box, toy.particles, toy.model, toy.row,
+                                    make_solver({.name = "pcg", .tolerance = 1e-10}), settings);
+  toy.run("euler", 0.005, 1);
+  Vec<2> sum{};
+  for (std::size_t i = 0; i < toy.particles.position.size(); ++i)
+    if (toy.particles.is_free(i)) sum += toy.particles.velocity[i];
+  EXPECT_LT(norm(sum), 1e-9);
+  EXPECT_EQ(toy.dynamics->statistics().problem, "centre of mass held still");
+}
+
+TEST(Dynamics, UnknownIntegratorListsTheNames) {
+  try {
+    make_integrator<2>("leapfrog");
+    FAIL();
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("trapezoidal, euler"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace odpd
