@@ -224,6 +224,8 @@ sed -n '/^\[output\]/,/^$/p' channel/case.toml >>many/case.toml
 expect_exit 0 run many --threads 1 --out one
 expect_exit 0 run many --threads 2 --out two
 same_run one two files
+expect_exit 0 run many --threads 1 --set seed=8 --out differs
+expect_exit 1 "$python" same_run.py one differs
 for threads in '1 2' '2 1'; do
   read -r before after <<<"$threads"
   expect_exit 0 run many --threads "$before" --set run.duration=0.05 --out "threads$before$after"
