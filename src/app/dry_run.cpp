@@ -45,7 +45,7 @@ std::string dry_run_text(Simulation<D>& simulation) {
   dynamics.evaluate(particles.position, clock.time(), stage);
   const std::vector<double> xi = dynamics.draw_noise(stage, clock.step, clock.dt, edge_noise);
   std::vector<double> q(xi.size(), 0.0);
-  dynamics.solve(stage, xi, q, clock.step);
+  dynamics.solve(stage, xi, q);
   const double stage_seconds = watch.seconds();
 
   const std::int64_t free = particles.free_count();

@@ -67,11 +67,13 @@ int command_line(int argc, char** argv) {
                    "threads; 0 chooses by the number of particles; never changes results")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
-  run_command->add_option(
+  CLI::Option* restart = run_command->add_option(
       "--restart", run.restart,
       "checkpoint.h5 to continue from: into its own directory (default) or, with --out, a new one");
-  run_command->add_flag("--dry-run", run.dry_run,
-                        "print what would be modelled, its size and an estimate of the time");
+  run_command
+      ->add_flag("--dry-run", run.dry_run,
+                 "print what would be modelled, its size and an estimate of the time")
+      ->excludes(restart);
 
   odpd::CompareOptions compare;
   CLI::App* compare_command = app.add_subcommand(

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "odpd/core/error.h"
+#include "odpd/core/parallel.h"
 #include "odpd/io/json.h"
 #include "odpd/version.h"
 
@@ -110,7 +110,7 @@ std::string with_error(double value, double standard_error) {
 
 template <int D>
 std::string summary_json(const Simulation<D>& simulation, const Results& results,
-                         const std::vector<CheckOutcome>& checks, const RunFacts& facts) {
+                         const std::vector<CheckOutcome>& checks) {
   const CaseSettings& settings = simulation.settings();
   const Clock& clock = simulation.clock();
   JsonObject observables;
@@ -126,9 +126,9 @@ std::string summary_json(const Simulation<D>& simulation, const Results& results
       .set("equilibration_steps", clock.equilibration_steps)
       .set("time", clock.time());
   json.set("finished", clock.finished())
-      .set("interrupted", facts.interrupted)
-      .set("threads", facts.threads);
-  json.set("wall_seconds", facts.wall_seconds);
+      .set("interrupted", !clock.finished())
+      .set("threads", threads());
+  json.set("wall_seconds", simulation.wall_seconds());
   json.set("phase_seconds", phases_json(simulation.dynamics().phases()));
   json.set("solver", solver_json(simulation));
   json.set("observables", observables).set("checks", checks_json(checks));
@@ -141,7 +141,7 @@ std::string summary_json(const Simulation<D>& simulation, const Results& results
 
 template <int D>
 std::string report_text(const Simulation<D>& simulation, const Results& results,
-                        const std::vector<CheckOutcome>& checks, const RunFacts& facts) {
+                        const std::vector<CheckOutcome>& checks) {
   const CaseSettings& settings = simulation.settings();
   const Clock& clock = simulation.clock();
   const SolverStatistics& s = simulation.dynamics().statistics();
@@ -150,7 +150,7 @@ std::string report_text(const Simulation<D>& simulation, const Results& results,
       "  {}D, {} free particles and {} of known velocity; {} at dt = {}, {} steps (t = {:.6g}){}\n",
       D, free_particles(simulation),
       simulation.scene().particles().size() - free_particles(simulation), settings.integrator,
-      clock.dt, clock.step, clock.time(), facts.interrupted ? ", interrupted" : "");
+      clock.dt, clock.step, clock.time(), clock.finished() ? "" : ", interrupted");
   out += fmt::format(
       "  solver {} to {:g}: {:.1f} iterations per solve (most {}), worst true residual {:.2g}\n",
       settings.solver.name, settings.solver.tolerance,
@@ -175,17 +175,18 @@ std::string report_text(const Simulation<D>& simulation, const Results& results,
     out +=
         fmt::format(" {} {:.2f} ({:.0f} %){}", phase_name(static_cast<Phase>(p)), phases.seconds[p],
                     100.0 * phases.seconds[p] / total, p + 1 < phases.seconds.size() ? "," : "\n");
-  out += fmt::format("  {:.2f} s in this run on {} thread(s)\n", facts.wall_seconds, facts.threads);
+  out += fmt::format("  {:.2f} s of wall time in all, on {} thread(s)\n", simulation.wall_seconds(),
+                     threads());
   return out;
 }
 
 template std::string summary_json<2>(const Simulation<2>&, const Results&,
-                                     const std::vector<CheckOutcome>&, const RunFacts&);
+                                     const std::vector<CheckOutcome>&);
 template std::string summary_json<3>(const Simulation<3>&, const Results&,
-                                     const std::vector<CheckOutcome>&, const RunFacts&);
+                                     const std::vector<CheckOutcome>&);
 template std::string report_text<2>(const Simulation<2>&, const Results&,
-                                    const std::vector<CheckOutcome>&, const RunFacts&);
+                                    const std::vector<CheckOutcome>&);
 template std::string report_text<3>(const Simulation<3>&, const Results&,
-                                    const std::vector<CheckOutcome>&, const RunFacts&);
+                                    const std::vector<CheckOutcome>&);
 
 }  // namespace odpd

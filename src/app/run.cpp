@@ -34,19 +34,20 @@ bool same_directory(const fs::path& a, const fs::path& b) {
 }
 
 template <int D>
-int conclude(const Simulation<D>& simulation, RunOutput<D>& output, const RunFacts& facts) {
+int conclude(const Simulation<D>& simulation, RunOutput<D>& output) {
+  const bool interrupted_early = !simulation.clock().finished();
   const Results results = simulation.results();
   output.finish(results);
   // An interrupted run has not measured what its checks ask for.
-  const auto checks = facts.interrupted ? std::vector<CheckOutcome>{}
+  const auto checks = interrupted_early ? std::vector<CheckOutcome>{}
                                         : evaluate_checks(simulation.settings().checks, results,
                                                           simulation.alarm_crossings());
   write_file_atomically(output.directory() / "summary.json",
-                        summary_json(simulation, results, checks, facts));
-  fmt::print("{}  files in {}\n", report_text(simulation, results, checks, facts),
+                        summary_json(simulation, results, checks));
+  fmt::print("{}  files in {}\n", report_text(simulation, results, checks),
              output.directory().string());
   std::fflush(stdout);
-  if (facts.interrupted) return 130;
+  if (interrupted_early) return 130;
   for (const CheckOutcome& c : checks)
     if (!c.passed) return 4;
   return 0;
@@ -79,9 +80,6 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
     output.begin();
   }
 
-  RunFacts facts;
-  facts.threads = threads();
-  const Stopwatch watch;
   try {
     LiveLine<D> line(simulation);
     simulation.run(interrupted, [&] {
@@ -92,9 +90,7 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
     output.salvage();
     throw;
   }
-  facts.interrupted = !simulation.clock().finished();
-  facts.wall_seconds = watch.seconds();
-  return conclude(simulation, output, facts);
+  return conclude(simulation, output);
 }
 
 }  // namespace

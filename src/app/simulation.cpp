@@ -50,9 +50,19 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings)
   config.reject_unread();
 }
 
+// The integrator's step; what goes wrong in it is told with the step's number.
+template <int D>
+const StepRecord<D>& Simulation<D>::named_step() {
+  try {
+    return integrator_->step(dynamics_, clock_);
+  } catch (const SolverError& e) {
+    throw SolverError(fmt::format("step {}: {}", clock_.step, e.what()));
+  }
+}
+
 template <int D>
 const StepRecord<D>& Simulation<D>::step() {
-  const StepRecord<D>& record = integrator_->step(dynamics_, clock_);
+  const StepRecord<D>& record = named_step();
   clock_.advance();
   if (clock_.measuring()) alarm_crossings_ += record.alarm_crossings;
   const PhaseTimer timer(dynamics_.phases(), Phase::measure);
@@ -112,6 +122,7 @@ void Simulation<D>::save(CheckpointWriter& out) const {
   run.write("counts", std::vector<std::int64_t>{clock_.step, alarm_crossings_});
   const PhaseSeconds& phases = dynamics_.phases();
   run.write("phase_seconds", std::vector<double>(phases.seconds.begin(), phases.seconds.end()));
+  run.write("wall_seconds", std::vector<double>{wall_seconds()});
   const SolverStatistics& s = dynamics_.statistics();
   run.write("solver_counts", std::vector<std::int64_t>{s.solves, s.iterations, s.most_iterations});
   run.write("solver_worst_residual", std::vector<double>{s.worst_residual});
@@ -141,6 +152,7 @@ void Simulation<D>::load(CheckpointReader& in) {
   alarm_crossings_ = counts.at(1);
   const std::vector<double> seconds = run.read_doubles("phase_seconds");
   std::copy(seconds.begin(), seconds.end(), dynamics_.phases().seconds.begin());
+  earlier_seconds_ = run.read_doubles("wall_seconds").at(0);
   const std::vector<std::int64_t> solver = run.read_integers("solver_counts");
   SolverStatistics& s = dynamics_.statistics();
   s.solves = solver.at(0);

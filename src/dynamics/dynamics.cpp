@@ -98,8 +98,8 @@ std::vector<double> Dynamics<D>::right_hand_side(Stage<D>& stage, const std::vec
 }
 
 template <int D>
-void Dynamics<D>::solve(Stage<D>& stage, const std::vector<double>& xi, std::vector<double>& guess,
-                        std::int64_t step) {
+void Dynamics<D>::solve(Stage<D>& stage, const std::vector<double>& xi,
+                        std::vector<double>& guess) {
   const std::vector<double> b = right_hand_side(stage, xi);
   {
     const PhaseTimer timer(phases_, Phase::solve);
@@ -110,8 +110,8 @@ void Dynamics<D>::solve(Stage<D>& stage, const std::vector<double>& xi, std::vec
   phases_[Phase::assembly] += report.assembly_seconds;
   phases_[Phase::solve] -= report.assembly_seconds;
   if (!report.converged)
-    throw SolverError(fmt::format("step {}: solver '{}' did not converge: {}", step,
-                                  solver_->name(), report.failure));
+    throw SolverError(
+        fmt::format("solver '{}' did not converge: {}", solver_->name(), report.failure));
   ++statistics_.solves;
   statistics_.iterations += report.iterations;
   statistics_.most_iterations = std::max(statistics_.most_iterations, report.iterations);
@@ -121,30 +121,27 @@ void Dynamics<D>::solve(Stage<D>& stage, const std::vector<double>& xi, std::vec
   dofs().scatter(guess, known, stage.velocity);
   for (std::size_t i = 0; i < stage.velocity.size(); ++i)
     if (!finite(stage.velocity[i]))
-      throw SolverError(
-          fmt::format("step {}: the velocity of particle {} is not finite; reduce integrator.dt",
-                      step, particles_.id[i]));
+      throw SolverError(fmt::format(
+          "the velocity of particle {} is not finite; reduce integrator.dt", particles_.id[i]));
 }
 
 template <int D>
-void Dynamics<D>::check_paths(const std::vector<Vec<D>>& velocity, double dt,
-                              std::int64_t step) const {
+void Dynamics<D>::check_paths(const std::vector<Vec<D>>& velocity, double dt) const {
   for (std::size_t i = 0; i < velocity.size(); ++i)
     for (int c = 0; c < D; ++c) {
       const double path = dt * velocity[i][c];
       if (std::abs(path) < 0.5 * box_.size[c]) continue;
       throw SolverError(
-          fmt::format("step {}: particle {} would move {:.3g} in direction {}, more than half the "
+          fmt::format("particle {} would move {:.3g} in direction {}, more than half the "
                       "box ({:.3g}): the run has blown "
                       "up; reduce integrator.dt (explicit repulsion wants dt below 0.2 gamma/a)",
-                      step, particles_.id[i], path, "xyz"[c], box_.size[c]));
+                      particles_.id[i], path, "xyz"[c], box_.size[c]));
     }
 }
 
 template <int D>
-std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, double dt,
-                                           std::int64_t step) const {
-  check_paths(velocity, dt, step);
+std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, double dt) const {
+  check_paths(velocity, dt);
   std::vector<Vec<D>> r = particles_.position;
   for (std::size_t i = 0; i < r.size(); ++i) {
     r[i] += dt * velocity[i];
@@ -155,8 +152,8 @@ std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, 
 }
 
 template <int D>
-std::int64_t Dynamics<D>::move(const std::vector<Vec<D>>& velocity, double dt, std::int64_t step) {
-  check_paths(velocity, dt, step);
+std::int64_t Dynamics<D>::move(const std::vector<Vec<D>>& velocity, double dt) {
+  check_paths(velocity, dt);
   std::int64_t crossings = 0;
   for (std::size_t i = 0; i < velocity.size(); ++i) {
     particles_.position[i] += dt * velocity[i];

@@ -11,9 +11,9 @@ const StepRecord<D>& Euler<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   const std::vector<double> xi =
       dynamics.draw_noise(record_.start, clock.step, clock.dt, record_.edge_noise);
   std::vector<double> q(xi.size(), 0.0);
-  dynamics.solve(record_.start, xi, q, clock.step);
+  dynamics.solve(record_.start, xi, q);
   record_.v_mid = record_.start.velocity;
-  record_.alarm_crossings = dynamics.move(record_.v_mid, clock.dt, clock.step);
+  record_.alarm_crossings = dynamics.move(record_.v_mid, clock.dt);
   return record_;
 }
 

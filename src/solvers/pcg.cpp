@@ -13,6 +13,14 @@ namespace odpd {
 
 namespace {
 
+// Residuals of conjugate gradients rise and fall, but never by this much on a regular system.
+constexpr double divergence = 1e6;
+constexpr const char* diverged =
+    "the residual grows without bound: the matrix is singular and the forces are not balanced, as "
+    "for a group of "
+    "particles out of reach of all others; a weak pairwise friction of longer range "
+    "(fluid.rattler_friction) joins them";
+
 std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 class ConjugateGradients : public Solver {
@@ -51,6 +59,7 @@ double ConjugateGradients::start(std::span<const double> b, std::span<const doub
 
 /// Iterates until the recursive residual is below `goal`; sets ok, or leaves it and says why.
 void ConjugateGradients::cycle(std::span<double> x, double goal, Attempt& result) {
+  const double first = fixed_norm(r_);
   double rho_before = 0.0;
   while (result.iterations < iterations_left_) {
     ++result.iterations;
@@ -75,8 +84,13 @@ void ConjugateGradients::cycle(std::span<double> x, double goal, Attempt& result
       r_[index(i)] -= alpha * q_[index(i)];
     });
     rho_before = rho;
-    if (fixed_norm(r_) <= goal) {
+    const double norm = fixed_norm(r_);
+    if (norm <= goal) {
       result.ok = true;
+      return;
+    }
+    if (norm > divergence * first) {
+      result.failure = diverged;
       return;
     }
   }

@@ -41,7 +41,7 @@ struct Lonely {
     const std::string how_many = std::to_string(neighbours) + " neighbour";
     support::expect_error<odpd::SolverError>(
         [&] { rebuild(DpdParameters{}, 0.0); },
-        {who.c_str(), how_many.c_str(), "rattler_friction", "density", "cutoff", "mass"});
+        {who.c_str(), how_many.c_str(), "rattler_friction", "density", "cutoff"});
     EXPECT_NO_THROW(rebuild(DpdParameters{}, 1e-3)) << "a shift holds it";
   }
 };

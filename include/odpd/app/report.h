@@ -21,19 +21,12 @@ struct CheckOutcome {
 std::vector<CheckOutcome> evaluate_checks(const std::vector<CheckSettings>& checks,
                                           const Results& results, std::int64_t alarm_crossings);
 
-/// What a run was, beside the simulation itself.
-struct RunFacts {
-  double wall_seconds = 0.0;
-  bool interrupted = false;
-  int threads = 1;
-};
-
 template <int D>
 std::string summary_json(const Simulation<D>& simulation, const Results& results,
-                         const std::vector<CheckOutcome>& checks, const RunFacts& facts);
+                         const std::vector<CheckOutcome>& checks);
 template <int D>
 std::string report_text(const Simulation<D>& simulation, const Results& results,
-                        const std::vector<CheckOutcome>& checks, const RunFacts& facts);
+                        const std::vector<CheckOutcome>& checks);
 /// "1.2345 +- 0.0067": digits by the error.
 std::string with_error(double value, double standard_error);
 

@@ -40,11 +40,16 @@ class Simulation {
   /// Particles the mirror caught during the measured part: every check fails when there were any.
   std::int64_t alarm_crossings() const { return alarm_crossings_; }
 
+  /// Seconds since this object was made, plus those of the parts of the run before a restart.
+  double wall_seconds() const { return earlier_seconds_ + watch_.seconds(); }
+
   void save(CheckpointWriter& out) const;
   /// Continues from a checkpoint of the same case. Throws ConfigError naming the first value that differs.
   void load(CheckpointReader& in);
 
  private:
+  const StepRecord<D>& named_step();
+
   Config config_;
   CaseSettings settings_;
   Clock clock_;
@@ -53,6 +58,8 @@ class Simulation {
   std::unique_ptr<Integrator<D>> integrator_;
   std::vector<std::unique_ptr<Observer<D>>> observers_;
   std::int64_t alarm_crossings_ = 0;
+  double earlier_seconds_ = 0.0;
+  Stopwatch watch_;
 };
 
 }  // namespace odpd

@@ -63,14 +63,12 @@ class Dynamics {
   std::vector<double> right_hand_side(Stage<D>& stage, const std::vector<double>& xi);
   /// Solves for the stage's velocities. `guess` in, answer out (unknowns). Throws SolverError when the solver did
   /// not converge or a velocity is not finite.
-  void solve(Stage<D>& stage, const std::vector<double>& xi, std::vector<double>& guess,
-             std::int64_t step);
+  void solve(Stage<D>& stage, const std::vector<double>& xi, std::vector<double>& guess);
   /// position + dt velocity, wrapped; a particle that moves further than half the box throws, as in `move`.
-  std::vector<Vec<D>> displaced(const std::vector<Vec<D>>& velocity, double dt,
-                                std::int64_t step) const;
+  std::vector<Vec<D>> displaced(const std::vector<Vec<D>>& velocity, double dt) const;
   /// Moves the particles by dt velocity and remembers it; returns the mirror's catches. Throws SolverError when a
   /// particle moves further than half the box in one step.
-  std::int64_t move(const std::vector<Vec<D>>& velocity, double dt, std::int64_t step);
+  std::int64_t move(const std::vector<Vec<D>>& velocity, double dt);
 
   const Resistance<D>& resistance() const { return resistance_; }
   const PairList<D>& pair_list() const { return list_; }
@@ -82,7 +80,7 @@ class Dynamics {
   const SolverStatistics& statistics() const { return statistics_; }
 
  private:
-  void check_paths(const std::vector<Vec<D>>& velocity, double dt, std::int64_t step) const;
+  void check_paths(const std::vector<Vec<D>>& velocity, double dt) const;
 
   const Box<D> box_;
   Particles<D>& particles_;

@@ -4,6 +4,7 @@
 //   y_i = shift x_i + sum_edges g (g . (x_i - x_j)),   g = sqrt(zeta_par) e   (x_j = 0 where j has known velocity)
 //
 // (Phan-Thien et al. 2016, eq. 16). With friction across e, g g^T becomes (zeta_par - zeta_perp) e e^T + zeta_perp I.
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -41,25 +42,33 @@ class Resistance : public System {
   std::uint64_t generation() const override { return generation_; }
 
  private:
-  struct Entry {
-    Vec<D> g;             ///< sqrt(|zeta_par - zeta_perp|) e
-    double across = 0.0;  ///< zeta_perp
-    double sign = 1.0;    ///< of zeta_par - zeta_perp
-    std::int32_t node = -1;
+  // One direction of an edge between two free particles.
+  struct Link {
+    Vec<D> g;               ///< sqrt(|zeta_par - zeta_perp|) e
+    std::int32_t node = 0;  ///< the other one
   };
-  /// Friction force per slip: (sign g g^T + across I) slip.
-  static Vec<D> stretch(const Entry& entry, const Vec<D>& slip) {
-    Vec<D> y = entry.sign * dot(entry.g, slip) * entry.g;
-    if (entry.across != 0.0) y += entry.across * slip;
-    return y;
-  }
-  void check_rattlers(const DofMap<D>& dofs, const Particles<D>& particles, double shift) const;
+  // What friction across e adds to a link; kept only where there is any.
+  struct Across {
+    double zeta_perp = 0.0;
+    double sign = 1.0;  ///< of zeta_par - zeta_perp
+  };
+  using Block = std::array<double, static_cast<std::size_t>(D* D)>;  // row-major
+
+  Vec<D> pull(std::size_t link, const Vec<D>& slip) const;
+  template <bool transverse>
+  Vec<D> row_product(std::size_t node, std::span<const double> x) const;
+  void fill_row(std::size_t node, std::int32_t particle, const PairNetwork<D>& network,
+                const DofMap<D>& dofs);
+  void check_rattlers(const PairNetwork<D>& network, const DofMap<D>& dofs,
+                      const Particles<D>& particles) const;
 
   Box<D> box_;
   bool hold_;
   std::int64_t nodes_ = 0;
-  std::vector<std::int64_t> start_;  // rows of entries_, both directions stored
-  std::vector<Entry> entries_;       // coupling to free nodes, then to known particles (node = -1)
+  std::vector<std::int64_t> start_;  // rows of links_, both directions of an edge stored
+  std::vector<Link> links_;
+  std::vector<Across> across_;  // one per link, or empty
+  std::vector<Block> anchor_;  // per node: friction with particles of known velocity, and the shift
   double shift_ = 0.0;
   bool translations_are_null_ = false;
   std::vector<double> positions_;
