@@ -47,9 +47,17 @@ double BlockAverage::plateau(std::vector<double> blocks) {
     const auto n = static_cast<double>(blocks.size());
     double mean = 0.0;
     for (double b : blocks) mean += b / n;
-    double square = 0.0;
-    for (double b : blocks) square += (b - mean) * (b - mean);
-    largest = std::max(largest, std::sqrt(square / (n * (n - 1.0))));
+    double square = 0.0, lagged = 0.0;
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      square += (blocks[k] - mean) * (blocks[k] - mean);
+      if (k > 0) lagged += (blocks[k] - mean) * (blocks[k - 1] - mean);
+    }
+    double error = std::sqrt(square / (n * (n - 1.0)));
+    // Blocks that still follow each other count for fewer: (1 + c)/(1 - c) for a first-order autoregression.
+    const double correlation = square > 0.0 ? std::min(lagged / square, 0.95) : 0.0;
+    if (correlation > 2.0 / std::sqrt(n))
+      error *= std::sqrt((1.0 + correlation) / (1.0 - correlation));
+    largest = std::max(largest, error);
     const std::size_t half = blocks.size() / 2;
     for (std::size_t k = 0; k < half; ++k) blocks[k] = 0.5 * (blocks[2 * k] + blocks[2 * k + 1]);
     blocks.resize(half);

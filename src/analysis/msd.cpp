@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "odpd/analysis/least_squares.h"
+#include "odpd/core/error.h"
 
 namespace odpd {
 
@@ -16,15 +17,10 @@ Msd<D>::Msd(ObserverSettings settings, MsdSettings msd, const Scene<D>& scene, d
       scene_(scene),
       lag_time_(dt * static_cast<double>(this->settings().every)),
       lags_(std::max<std::int64_t>(1, std::llround(msd_.window / lag_time_))),
-      spacing_(std::max<std::int64_t>(1, lags_ / 4)),
       species_(scene.settings().species.size()),
-      population_(species_, 0.0),
-      curve_(static_cast<std::size_t>(lags_) * species_),
-      diffusion_(species_ + 1) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(scene.particles().size()); ++i)
-    if (scene.particles().is_free(i))
-      population_[static_cast<std::size_t>(scene.particles().species[i])] += 1.0;
-}
+      window_(static_cast<std::size_t>(lags_) * species_, 0.0),
+      curve_(window_.size()),
+      diffusion_(species_ + 1) {}
 
 template <int D>
 void Msd<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>&) {
@@ -32,39 +28,39 @@ void Msd<D>::measure(const Clock&, const Particles<D>& particles, const StepReco
   // Unwrapped positions by identity, so that reordering of memory does not matter.
   std::vector<double> now(particles.position.size() * D);
   std::vector<std::int32_t> kind(particles.position.size(), -1);
+  std::vector<double> population(species_, 0.0);
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
     const auto id = static_cast<std::size_t>(particles.id[i]);
-    if (particles.is_free(i)) kind[id] = particles.species[i];
+    if (particles.is_free(i)) {
+      kind[id] = particles.species[i];
+      population[static_cast<std::size_t>(kind[id])] += 1.0;
+    }
     for (std::size_t c = 0; c < D; ++c)
       now[id * D + c] = particles.position[i].x[c] + particles.image[i][c] * scene_.box().size.x[c];
   }
-  for (Origin& origin : origins_) {
-    const auto lag = static_cast<std::size_t>(samples_ - origin.sample) - 1;
+  if (!origin_.empty()) {
     std::vector<double> sum(species_, 0.0);
     for (std::size_t id = 0; id < kind.size(); ++id) {
       if (kind[id] < 0) continue;
       for (const int c : msd_.directions) {
         const std::size_t at = id * D + static_cast<std::size_t>(c);
-        const double path = now[at] - origin.position[at];
+        const double path = now[at] - origin_[at];
         sum[static_cast<std::size_t>(kind[id])] += path * path;
       }
     }
     for (std::size_t a = 0; a < species_; ++a)
-      origin.msd[lag * species_ + a] = population_[a] > 0.0 ? sum[a] / population_[a] : 0.0;
+      window_[static_cast<std::size_t>(lag_) * species_ + a] =
+          population[a] > 0.0 ? sum[a] / population[a] : 0.0;
+    if (++lag_ < lags_) return;
+    finish_window(population);
   }
-  if (!origins_.empty() && samples_ - origins_.front().sample == lags_) {
-    finish(origins_.front());
-    origins_.erase(origins_.begin());
-  }
-  if (samples_ % spacing_ == 0)
-    origins_.push_back({samples_, std::move(now),
-                        std::vector<double>(static_cast<std::size_t>(lags_) * species_)});
-  ++samples_;
+  origin_ = std::move(now);
+  lag_ = 0;
 }
 
 template <int D>
-void Msd<D>::finish(const Origin& origin) {
-  curve_.add(origin.msd);
+void Msd<D>::finish_window(const std::vector<double>& population) {
+  curve_.add(window_);
   std::vector<double> value(species_ + 1, 0.0);
   double everyone = 0.0;
   for (std::size_t a = 0; a < species_; ++a) {
@@ -73,13 +69,13 @@ void Msd<D>::finish(const Origin& origin) {
       const double time = lag_time_ * static_cast<double>(lag + 1);
       if (time < msd_.fit_from && lag + 2 < lags_) continue;
       t.push_back(time);
-      y.push_back(origin.msd[static_cast<std::size_t>(lag) * species_ + a]);
+      y.push_back(window_[static_cast<std::size_t>(lag) * species_ + a]);
     }
     const std::vector<double> even(t.size(), 1.0);
     const double slope = t.size() > 1 ? fit_polynomial(1, t, y, even).coefficient[1] : y[0] / t[0];
     value[a] = slope / (2.0 * static_cast<double>(msd_.directions.size()));
-    value[species_] += population_[a] * value[a];
-    everyone += population_[a];
+    value[species_] += population[a] * value[a];
+    everyone += population[a];
   }
   value[species_] /= everyone;
   diffusion_.add(value);
@@ -139,33 +135,27 @@ void Msd<D>::add_results(Results& results) const {
 
 template <int D>
 void Msd<D>::save(StateWriter& out) const {
-  std::vector<std::int64_t> samples{samples_};
-  std::vector<double> flat;
-  for (const Origin& origin : origins_) {
-    samples.push_back(origin.sample);
-    flat.insert(flat.end(), origin.position.begin(), origin.position.end());
-    flat.insert(flat.end(), origin.msd.begin(), origin.msd.end());
-  }
-  out.write("samples", samples);
-  out.write("origins", flat);
+  out.write("lag", std::vector<std::int64_t>{lag_});
+  out.write("origin", origin_);
+  out.write("window", window_);
   curve_.save(out, "curve");
   diffusion_.save(out, "diffusion");
 }
 
 template <int D>
 void Msd<D>::load(const StateReader& in) {
-  const std::vector<std::int64_t> samples = in.read_integers("samples");
-  const std::vector<double> flat = in.read_doubles("origins");
-  samples_ = samples.at(0);
-  origins_.clear();
-  const std::size_t msd_size = static_cast<std::size_t>(lags_) * species_;
-  const std::size_t stride = samples.size() > 1 ? flat.size() / (samples.size() - 1) : 0;
-  for (std::size_t k = 0; k + 1 < samples.size(); ++k) {
-    const auto begin = flat.begin() + static_cast<std::ptrdiff_t>(k * stride);
-    const auto split = begin + static_cast<std::ptrdiff_t>(stride - msd_size);
-    origins_.push_back(
-        {samples[k + 1], {begin, split}, {split, split + static_cast<std::ptrdiff_t>(msd_size)}});
-  }
+  const std::vector<std::int64_t> lag = in.read_integers("lag");
+  origin_ = in.read_doubles("origin");
+  window_ = in.read_doubles("window");
+  // The particles of the checkpoint are in the scene already.
+  const bool begun = origin_.size() == scene_.particles().position.size() * D;
+  if (lag.size() != 1 || lag[0] < 0 || lag[0] >= lags_ || !(begun || origin_.empty()) ||
+      window_.size() != static_cast<std::size_t>(lags_) * species_)
+    throw IoError(
+        fmt::format("the checkpoint's displacements '{}' do not fit the case's particles and "
+                    "window: it is damaged or of another case",
+                    this->settings().name));
+  lag_ = lag[0];
   curve_.load(in, "curve");
   diffusion_.load(in, "diffusion");
 }

@@ -30,6 +30,19 @@ std::string default_axis(const Scene<D>& scene) {
   return "y";
 }
 
+// Bins whose centres a fit would use.
+template <int D>
+std::int64_t bins_between(const ProfileSettings& p, const Scene<D>& scene) {
+  const double low = scene.fluid_low()[p.axis];
+  const double width = (scene.fluid_high()[p.axis] - low) / static_cast<double>(p.bins);
+  std::int64_t count = 0;
+  for (std::int64_t b = 0; b < p.bins; ++b) {
+    const double centre = low + width * (static_cast<double>(b) + 0.5);
+    if (centre >= p.fit_from && centre <= p.fit_to) ++count;
+  }
+  return count;
+}
+
 template <int D>
 std::unique_ptr<Observer<D>> make_profile(const Config& entry, ObserverSettings settings,
                                           const Scene<D>& scene) {
@@ -46,6 +59,16 @@ std::unique_ptr<Observer<D>> make_profile(const Config& entry, ObserverSettings 
   p.fit_from = entry.number("fit_from", scene.fluid_low()[p.axis] + margin);
   p.fit_to = entry.number("fit_to", scene.fluid_high()[p.axis] - margin);
   if (!(p.fit_from < p.fit_to)) entry.fail("fit_from", "must be less than fit_to");
+  const std::int64_t needed = p.fit == ProfileFit::linear     ? 3
+                              : p.fit == ProfileFit::parabola ? 4
+                                                              : 0;
+  if (bins_between(p, scene) < needed)
+    entry.fail(
+        "fit",
+        fmt::format(
+            "needs at least {} bins with centres between fit_from = {} and fit_to = {}: use more "
+            "bins or a wider range",
+            needed, p.fit_from, p.fit_to));
   return std::make_unique<Profile<D>>(std::move(settings), p, scene);
 }
 
@@ -125,6 +148,9 @@ std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::strin
   ObserverSettings settings;
   settings.kind = kind;
   settings.name = entry.text("name", kind);
+  // It becomes the stem of files.
+  if (!is_plain_name(settings.name) || settings.name == "particles")
+    entry.fail("name", "use letters, digits, _ and - (and not 'particles', which names a picture)");
   settings.every = entry.positive_integer("every", default_every(kind, clock));
   settings.series = entry.boolean("series", false);
   if (kind == "thermo") return std::make_unique<Thermo<D>>(std::move(settings), scene);

@@ -23,22 +23,26 @@ Rdf<D>::Rdf(ObserverSettings settings, double r_max, std::int64_t bins, const Sc
       r_max_(r_max),
       bins_(static_cast<std::size_t>(bins)),
       scene_(scene),
-      species_(scene.settings().species.size()) {
+      species_(scene.settings().species.size()),
+      average_(species_ * (species_ + 1) / 2 * bins_) {}
+
+template <int D>
+std::vector<double> Rdf<D>::factors(const Particles<D>& particles) const {
   std::vector<double> count(species_, 0.0);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(scene.particles().size()); ++i)
-    if (scene.particles().is_free(i))
-      count[static_cast<std::size_t>(scene.particles().species[i])] += 1.0;
+  for (std::size_t i = 0; i < particles.position.size(); ++i)
+    if (particles.is_free(i)) count[static_cast<std::size_t>(particles.species[i])] += 1.0;
+  const double dr = r_max_ / static_cast<double>(bins_);
+  std::vector<double> factor;
   for (std::size_t a = 0; a < species_; ++a)
     for (std::size_t b = a; b < species_; ++b) {
       const double pairs = a == b ? 0.5 * count[a] * (count[a] - 1.0) : count[a] * count[b];
       for (std::size_t k = 0; k < bins_; ++k) {
-        const double dr = r_max / static_cast<double>(bins);
         const double shell =
             ball<D>(dr * static_cast<double>(k + 1)) - ball<D>(dr * static_cast<double>(k));
-        norm_.push_back(pairs > 0.0 ? scene.fluid_volume() / (pairs * shell) : 0.0);
+        factor.push_back(pairs > 0.0 ? scene_.fluid_volume() / (pairs * shell) : 0.0);
       }
     }
-  average_ = BlockAverage(norm_.size());
+  return factor;
 }
 
 template <int D>
@@ -53,7 +57,7 @@ void Rdf<D>::measure(const Clock&, const Particles<D>& particles, const StepReco
   PairList<D> list(scene_.box(), r_max_, 0.0);
   const auto& r = record.start.position;
   list.update(r);
-  newest_.assign(norm_.size(), 0.0);
+  newest_.assign(average_.width(), 0.0);
   for (std::int64_t row = 0; row < list.rows(); ++row) {
     const auto i = static_cast<std::size_t>(row);
     if (!particles.is_free(i)) continue;
@@ -66,7 +70,9 @@ void Rdf<D>::measure(const Clock&, const Particles<D>& particles, const StepReco
         newest_[pair_index(particles.species[i], particles.species[j]) * bins_ + bin] += 1.0;
     }
   }
-  for (std::size_t k = 0; k < newest_.size(); ++k) newest_[k] *= norm_[k];
+  // Of the particles given: a restart may bring others than the scene began with.
+  const std::vector<double> factor = factors(particles);
+  for (std::size_t k = 0; k < newest_.size(); ++k) newest_[k] *= factor[k];
   average_.add(newest_);
 }
 

@@ -1,6 +1,7 @@
 #include "odpd/app/case.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -105,22 +106,35 @@ void read_start_csv(SceneSettings<D>& scene) {
                                     table.columns.begin());
   };
   const std::size_t species = column("species");
-  for (int c = 0; c < D; ++c)
-    if (column({"xyz"[c]}) == table.columns.size())
-      throw ConfigError(fmt::format(
-          "{}: there is no column '{}': a start file needs x, y{} and, if wanted, species",
-          scene.start_file, "xyz"[c], D > 2 ? ", z" : ""));
+  std::vector<std::string> names;
+  for (int c = 0; c < D; ++c) names.emplace_back(1, "xyz"[c]);
+  for (const std::string& name : names)
+    if (column(name) == table.columns.size())
+      throw ConfigError(
+          fmt::format("{}: there is no column '{}': a start file needs {} and, if wanted, species",
+                      scene.start_file, name, fmt::join(names, ", ")));
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     Vec<D> r;
-    for (int c = 0; c < D; ++c)
-      r[c] = parse_number(scene.start_file, table.line[row], {"xyz"[c]},
-                          table.rows[row][column({"xyz"[c]})]);
+    for (int c = 0; c < D; ++c) {
+      const std::string& name = names[static_cast<std::size_t>(c)];
+      r[c] = parse_number(scene.start_file, table.line[row], name, table.rows[row][column(name)]);
+    }
     scene.start_positions.push_back(r);
     if (species < table.columns.size())
       scene.start_species.push_back(
           named_species(scene, table.rows[row][species],
                         fmt::format("{}:{}", scene.start_file, table.line[row])));
   }
+}
+
+// Other programs may round the edges to single precision.
+template <int D>
+void check_box(const Frame& frame, const Box<D>& box, const std::string& file) {
+  for (std::size_t c = 0; c < frame.box_size.size(); ++c)
+    if (std::abs(frame.box_size[c] - box.size.x[c]) > 1e-6 * box.size.x[c])
+      throw ConfigError(fmt::format(
+          "{}: its box is {} long in direction {}, the case's is {}: set box.size to {}", file,
+          frame.box_size[c], "xyz"[c], box.size.x[c], fmt::join(frame.box_size, ", ")));
 }
 
 template <int D>
@@ -130,6 +144,7 @@ void read_start_h5md(SceneSettings<D>& scene) {
     throw ConfigError(
         fmt::format("{} holds positions in {} dimensions, the case has dimension = {}",
                     scene.start_file, frame.dimension, D));
+  check_box(frame, scene.box, scene.start_file);
   const std::size_t n = frame.position.size() / D;
   for (std::size_t k = 0; k < n; ++k) {
     // The walls of an odpd trajectory are placed by the case itself.
@@ -225,7 +240,9 @@ std::vector<std::pair<std::string, std::string>> fixed_values(const Config& conf
     const auto in = [&](std::string_view table) { return path.rfind(table, 0) == 0; };
     if (path == "title" || path == "run.duration" || path == "start.file" || path == "check")
       continue;
-    if (in("solver.") || in("output.") || in("check.")) continue;
+    // Holding the centre of mass is another problem, not another solver.
+    if (in("solver.") && path != "solver.hold_centre_of_mass") continue;
+    if (in("output.") || in("check.")) continue;
     values.push_back(value);
   }
   std::sort(values.begin(), values.end());

@@ -81,10 +81,12 @@ FrozenProblem<D> freeze(Simulation<D>& simulation, std::int64_t steps) {
   return problem;
 }
 
+// |a - b| / |b|, or |a - b| where b is zero (an ideal gas at rest without noise).
 double relative_difference(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> d(a.size());
   for (std::size_t k = 0; k < a.size(); ++k) d[k] = a[k] - b[k];
-  return fixed_norm(d) / fixed_norm(b);
+  const double size = fixed_norm(b);
+  return size > 0.0 ? fixed_norm(d) / size : fixed_norm(d);
 }
 
 template <int D>
@@ -174,7 +176,7 @@ int compare_in(const CompareOptions& options, const Config& config, const CaseSe
   const std::filesystem::path directory =
       options.out.empty() ? std::filesystem::path("runs") / (settings.name + "-compare")
                           : options.out;
-  prepare_run_directory(directory);
+  const RunLock lock = prepare_run_directory(directory);
   write_file_atomically(directory / "case.toml", portable_case(config));
 
   const FrozenProblem<D> problem = freeze(simulation, options.steps);

@@ -113,7 +113,7 @@ int command_line(int argc, char** argv) {
     throw odpd::ConfigError(usage_error(app, e.what()));
   }
   odpd::set_quiet(quiet);
-  odpd::catch_signals();
+  odpd::let_large_writes_fail();
   if (run_command->parsed()) return odpd::run_case(run);
   compare.increment_rule = stopping == "increment";
   if (compare_command->parsed()) return odpd::compare_solvers(compare);

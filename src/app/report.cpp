@@ -101,6 +101,7 @@ std::vector<CheckOutcome> evaluate_checks(const std::vector<CheckSettings>& chec
 
 std::string with_error(double value, double standard_error) {
   if (!std::isfinite(value)) return "undefined";
+  if (std::isnan(standard_error)) return fmt::format("{:.6g} (no error estimate)", value);
   if (!(standard_error > 0.0)) return fmt::format("{:.6g}", value);
   // Two digits of the error, and the value to the same place.
   const int decimals =

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <optional>
 
 #include "odpd/app/dry_run.h"
@@ -33,11 +35,21 @@ bool same_directory(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, ignored);
 }
 
+// Explicit conservative forces are accurate to dt of about 0.2 to 0.4 gamma/a.
+template <int D>
+double longest_sensible_step(const SceneSettings<D>& scene) {
+  double limit = std::numeric_limits<double>::infinity();
+  for (const DpdParameters& p : scene.pairs)
+    if (p.a > 0.0) limit = std::min(limit, 0.4 * p.gamma / p.a);
+  return limit;
+}
+
 template <int D>
 int conclude(const Simulation<D>& simulation, RunOutput<D>& output) {
   const bool interrupted_early = !simulation.clock().finished();
+  output.close();
   const Results results = simulation.results();
-  output.finish(results);
+  output.write_results(results);
   // An interrupted run has not measured what its checks ask for.
   const auto checks = interrupted_early ? std::vector<CheckOutcome>{}
                                         : evaluate_checks(simulation.settings().checks, results,
@@ -63,6 +75,13 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
   }
   if (const std::string warning = simulation.integrator().warning(); !warning.empty())
     log_warning(warning);
+  if (const double limit = longest_sensible_step(simulation.scene().settings());
+      settings.clock.dt > limit)
+    log_warning(
+        fmt::format("integrator.dt = {} is beyond 0.4 gamma/a = {:.3g}, where the explicit "
+                    "repulsion is no longer "
+                    "accurate",
+                    settings.clock.dt, limit));
 
   const fs::path directory = output_directory(options, settings);
   std::optional<CheckpointReader> checkpoint;
@@ -72,7 +91,7 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
   }
   const bool continues =
       checkpoint && same_directory(directory, fs::absolute(options.restart).parent_path());
-  if (!continues) prepare_run_directory(directory);
+  const RunLock lock = continues ? RunLock(directory) : prepare_run_directory(directory);
   RunOutput<D> output(directory, config, simulation);
   if (continues) {
     output.resume(*checkpoint);
@@ -80,13 +99,14 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
     output.begin();
   }
 
+  catch_signals();
   try {
     LiveLine<D> line(simulation);
     simulation.run(interrupted, [&] {
       output.after_step();
       line.update();
     });
-  } catch (const Error&) {
+  } catch (...) {
     output.salvage();
     throw;
   }

@@ -15,21 +15,23 @@ namespace odpd {
 
 namespace fs = std::filesystem;
 
-void prepare_run_directory(const fs::path& directory) try {
+RunLock prepare_run_directory(const fs::path& directory) try {
   if (fs::exists(directory) && !fs::is_directory(directory))
     throw IoError(fmt::format(
         "{}: a file is where the output directory should be; remove it or choose another --out",
         directory.string()));
   if (fs::exists(directory) && !fs::is_empty(directory)) {
-    if (!fs::exists(directory / "case.toml"))
-      throw IoError(fmt::format(
-          "{}: the directory is not empty and holds no run of odpd (no case.toml), so it is left "
-          "alone; choose another --out",
-          directory.string()));
+    if (!RunLock::marks(directory))
+      throw IoError(
+          fmt::format("{}: the directory is not empty and holds no run of odpd, so it is left "
+                      "alone; choose another --out",
+                      directory.string()));
+    const RunLock idle(directory);  // held until it is out of the way: nobody writes there
     const fs::path moved = move_aside(directory);
     log_info(fmt::format("the earlier run was moved to {}", moved.string()));
   }
   make_directory(directory);
+  return RunLock(directory);
 } catch (const fs::filesystem_error& e) {
   throw IoError(fmt::format("{}: cannot be used for the output: {}; choose another --out",
                             directory.string(), e.code().message()));
@@ -58,10 +60,14 @@ void RunOutput<D>::begin() {
     columns.insert(columns.begin(), "time");
     series_.back() = std::make_unique<SeriesFile>(series_path(k), columns);
   }
+  if (simulation_.settings().output.trajectory_every > 0) trajectory_.append(simulation_.frame());
 }
 
 template <int D>
 void RunOutput<D>::resume(CheckpointReader& in) {
+  // Until this part has ended, its summary is not that of the run.
+  const fs::path summary = directory_ / "summary.json";
+  if (fs::exists(summary)) fs::rename(summary, directory_ / "summary.previous.json");
   const StateReader& state = in.component("output");
   const std::vector<std::int64_t> bytes = state.read_integers("series_bytes");
   for (std::size_t k = 0; k < simulation_.observers().size(); ++k)
@@ -141,10 +147,15 @@ void RunOutput<D>::salvage() noexcept {
 }
 
 template <int D>
-void RunOutput<D>::finish(const Results& results) {
+void RunOutput<D>::close() {
   const PhaseTimer timer(simulation_.dynamics().phases(), Phase::write);
   write_vtk_frame();
   checkpoint();
+}
+
+template <int D>
+void RunOutput<D>::write_results(const Results& results) {
+  const PhaseTimer timer(simulation_.dynamics().phases(), Phase::write);
   for (const auto& [name, table] : results.tables) write_csv(directory_ / (name + ".csv"), table);
   if (!simulation_.settings().output.pictures) return;
   bool drawn = true;

@@ -1,7 +1,9 @@
 #include "odpd/app/simulation.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <map>
 
 #include "odpd/core/error.h"
@@ -48,6 +50,27 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings)
       integrator_(make_integrator<D>(settings_.integrator)),
       observers_(make_observers(config, scene_, clock_)) {
   config.reject_unread();
+  check_observables(config);
+}
+
+// A misspelt observable should not come out at the end of a long run.
+template <int D>
+void Simulation<D>::check_observables(const Config& config) const {
+  std::vector<std::string> names{"energy_per_particle", "pressure", "config_temperature",
+                                 "diffusion"};
+  if (!scene_.settings().walls.empty()) names.push_back("alarm_crossings");
+  for (const auto& observer : observers_) names.push_back(observer->settings().name);
+  for (const Config& check : config.tables("check")) {
+    const std::string observable = check.text("observable");
+    const std::string stem = observable.substr(0, observable.find('.'));
+    if (std::find(names.begin(), names.end(), stem) != names.end()) continue;
+    const std::string near = nearest_name(stem, names);
+    check.fail(
+        "observable",
+        fmt::format("nothing in this case measures '{}'{}; names start with one of {}", observable,
+                    near.empty() ? "" : fmt::format(", did you mean '{}'?", near),
+                    fmt::join(names, ", ")));
+  }
 }
 
 // The integrator's step; what goes wrong in it is told with the step's number.
@@ -64,6 +87,15 @@ template <int D>
 const StepRecord<D>& Simulation<D>::step() {
   const StepRecord<D>& record = named_step();
   clock_.advance();
+  if (record.alarm_crossings > 0 && !alarmed_) {
+    alarmed_ = true;
+    log_warning(fmt::format(
+        "step {}: {} particle(s) crossed a wall and were caught by the mirror behind it; checks "
+        "fail "
+        "when that happens while they measure. Use denser layers, a higher wall.stiffness or a "
+        "smaller integrator.dt",
+        record.step, record.alarm_crossings));
+  }
   if (clock_.measuring()) alarm_crossings_ += record.alarm_crossings;
   const PhaseTimer timer(dynamics_.phases(), Phase::measure);
   for (auto& observer : observers_)
@@ -140,7 +172,8 @@ void Simulation<D>::load(CheckpointReader& in) {
   if (const std::string what = difference(saved, config_); !what.empty())
     throw ConfigError(fmt::format(
         "the checkpoint belongs to another case: {}. A restart may change run.duration, "
-        "[solver], [output], [[check]] and the number of threads, nothing else",
+        "[solver] (but not hold_centre_of_mass), [output], [[check]] and the number of threads, "
+        "nothing else",
         what));
   const std::vector<std::int64_t> counts = run.read_integers("counts");
   clock_.step = counts.at(0);
@@ -160,7 +193,12 @@ void Simulation<D>::load(CheckpointReader& in) {
   s.most_iterations = solver.at(2);
   s.worst_residual = run.read_doubles("solver_worst_residual").at(0);
   s.problem = run.read_text("solver_problem");
+  const std::int64_t expected = scene_.particles().size();
   scene_.particles().load(in.component("particles"));
+  if (scene_.particles().size() != expected)
+    throw ConfigError(fmt::format(
+        "the checkpoint holds {} particles, the case has {}: it belongs to another case",
+        scene_.particles().size(), expected));
   dynamics_.particles_replaced();
   integrator_->load(in.component("integrator"));
   for (std::size_t k = 0; k < observers_.size(); ++k)

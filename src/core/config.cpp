@@ -341,6 +341,14 @@ std::vector<std::pair<std::string, std::string>> Config::flattened() const {
 
 std::filesystem::path Config::directory() const { return tree_->directory; }
 
+bool is_plain_name(const std::string& word) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  };
+  return !word.empty() && std::all_of(word.begin(), word.end(), plain);
+}
+
 std::string nearest_name(const std::string& word, const std::vector<std::string>& candidates) {
   // Insertions, deletions, replacements and swaps of neighbours each cost one.
   const auto distance = [&word](const std::string& other) {

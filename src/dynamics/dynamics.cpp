@@ -140,13 +140,14 @@ void Dynamics<D>::check_paths(const std::vector<Vec<D>>& velocity, double dt) co
 }
 
 template <int D>
-std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, double dt) const {
+std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, double dt,
+                                           std::int64_t& crossings) const {
   check_paths(velocity, dt);
   std::vector<Vec<D>> r = particles_.position;
   for (std::size_t i = 0; i < r.size(); ++i) {
     r[i] += dt * velocity[i];
     box_.wrap(r[i]);
-    if (particles_.is_free(i)) surroundings_.confine(r[i]);
+    if (particles_.is_free(i) && surroundings_.confine(r[i])) ++crossings;
   }
   return r;
 }

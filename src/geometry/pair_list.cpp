@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "odpd/core/error.h"
@@ -13,14 +14,21 @@ namespace odpd {
 template <int D>
 CellList<D>::CellList(const Box<D>& box, double width, std::span<const Vec<D>> positions)
     : box_(box) {
-  for (int c = 0; c < D; ++c) {
-    const auto n = static_cast<std::int64_t>(box.size[c] / width);
-    // More cells than particles per direction would only cost memory.
-    const auto most = std::max<std::int64_t>(1, static_cast<std::int64_t>(positions.size()));
-    count_[static_cast<std::size_t>(c)] =
-        std::clamp<std::int64_t>(n, 1, std::min<std::int64_t>(most, 1024));
-    cell_count_ *= count_[static_cast<std::size_t>(c)];
-  }
+  // More cells than a few per particle would only cost memory: wider ones serve a sparse box.
+  const double most = 4.0 * static_cast<double>(positions.size()) + 1.0;
+  Vec<D> count;
+  double cells = 0.0;
+  do {
+    cells = 1.0;
+    for (int c = 0; c < D; ++c) {
+      count[c] = std::max(1.0, std::floor(box.size[c] / width));
+      cells *= count[c];
+    }
+    width *= 1.25;
+  } while (cells > most);
+  for (int c = 0; c < D; ++c)
+    count_[static_cast<std::size_t>(c)] = static_cast<std::int64_t>(count[c]);
+  cell_count_ = static_cast<std::int64_t>(cells);
   start_.assign(static_cast<std::size_t>(cell_count_) + 1, 0);
   std::vector<std::int64_t> cell(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {

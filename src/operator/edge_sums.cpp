@@ -51,7 +51,9 @@ void add_friction_forces(const PairNetwork<D>& network, std::span<const Vec<D>> 
 template <int D>
 void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian) {
   for_each_incidence(network, [&](std::size_t p, std::size_t k, double) {
-    if (network.f_c[k] != 0.0)
+    // At r = 0 the Laplacian of a pair that repels is infinite. Such an edge is left out: coincident
+    // particles have measure zero, and one must not make an average infinite for good.
+    if (network.f_c[k] != 0.0 && network.r[k] > 0.0)
       laplacian[p] += network.k_c[k] - (D - 1) * network.f_c[k] / network.r[k];
   });
 }

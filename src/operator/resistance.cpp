@@ -80,7 +80,9 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
   });
   translations_are_null_ = !anchored;
   if (!anchored) anchor_.clear();
-  if (shift == 0.0) check_rattlers(network, dofs, particles);
+  if (shift != 0.0) return;
+  check_rattlers(network, dofs, particles);
+  check_clusters(dofs, particles);
 }
 
 template <int D>
@@ -123,6 +125,43 @@ void Resistance<D>::check_rattlers(const PairNetwork<D>& network, const DofMap<D
         "(fluid.rattler_friction = {{ gamma = 0.1, cutoff = 2.0 }}), a higher density, or a larger "
         "cutoff",
         particles.id[static_cast<std::size_t>(particle)], network.edges_of(particle).size()));
+  }
+}
+
+// Nodes joined by links move as one; each such group must be held by particles of known velocity, or be the only one.
+template <int D>
+void Resistance<D>::check_clusters(const DofMap<D>& dofs, const Particles<D>& particles) const {
+  const auto n_nodes = static_cast<std::size_t>(nodes_);
+  std::vector<std::int32_t> parent(n_nodes);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](std::int32_t n) {
+    while (parent[static_cast<std::size_t>(n)] != n) {
+      auto& up = parent[static_cast<std::size_t>(n)];
+      up = parent[static_cast<std::size_t>(up)];
+      n = up;
+    }
+    return n;
+  };
+  for (std::size_t n = 0; n < n_nodes; ++n)
+    for (auto k = static_cast<std::size_t>(start_[n]); k < static_cast<std::size_t>(start_[n + 1]);
+         ++k)
+      if (dot(links_[k].g, links_[k].g) > 0.0 || !across_.empty())
+        parent[static_cast<std::size_t>(root(links_[k].node))] = root(static_cast<std::int32_t>(n));
+  std::vector<bool> held(n_nodes, false);
+  for (std::size_t n = 0; n < anchor_.size(); ++n)
+    if (anchor_[n] != Block{})
+      held[static_cast<std::size_t>(root(static_cast<std::int32_t>(n)))] = true;
+  // Without any known velocity the first group carries the null space, and there may be no second.
+  if (translations_are_null_ && n_nodes > 0) held[static_cast<std::size_t>(root(0))] = true;
+  for (std::size_t n = 0; n < n_nodes; ++n) {
+    if (held[static_cast<std::size_t>(root(static_cast<std::int32_t>(n)))]) continue;
+    throw SolverError(
+        fmt::format("particle {} belongs to a group of particles out of reach of all others, which "
+                    "can move freely as one, so R is "
+                    "singular. Cures: a weak pairwise friction of longer range "
+                    "(fluid.rattler_friction = {{ gamma = 0.1, cutoff = "
+                    "2.0 }}), a higher density, or a larger cutoff",
+                    particles.id[static_cast<std::size_t>(dofs.particle_of(n))]));
   }
 }
 

@@ -106,16 +106,18 @@ std::vector<std::int32_t> assign_species(const std::vector<SpeciesSettings>& spe
   return list;
 }
 
+// Behind a wall's surface is allowed: the wall's potential is soft, and a trajectory holds such
+// positions.
 template <int D>
-void check_start_positions(const SceneSettings<D>& settings, const Vec<D>& low,
-                           const Vec<D>& high) {
+void check_start_positions(const SceneSettings<D>& settings) {
+  const Box<D>& box = settings.box;
   for (std::size_t k = 0; k < settings.start_positions.size(); ++k)
     for (int c = 0; c < D; ++c) {
       const double x = settings.start_positions[k][c];
-      if (!std::isfinite(x) || (!settings.box.is_periodic(c) && (x < low[c] || x > high[c])))
+      if (!std::isfinite(x) || (!box.is_periodic(c) && (x < 0.0 || x > box.size[c])))
         throw ConfigError(
-            fmt::format("{}: particle {} lies at {} = {}, but the fluid reaches from {} to {}",
-                        settings.start_file, k, "xyz"[c], x, low[c], high[c]));
+            fmt::format("{}: particle {} lies at {} = {}, but the box reaches from 0 to {}",
+                        settings.start_file, k, "xyz"[c], x, box.size[c]));
     }
 }
 
@@ -148,7 +150,7 @@ void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<
   std::vector<Vec<D>> points;
   std::vector<std::int32_t> species = settings.start_species;
   if (settings.start == StartKind::file) {
-    check_start_positions(settings, low, high);
+    check_start_positions(settings);
     points = settings.start_positions;
   } else {
     const double volume = Box<D>{high - low, {}}.volume();

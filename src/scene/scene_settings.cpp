@@ -65,6 +65,8 @@ std::vector<SpeciesSettings> read_species(const Config& config) {
   for (const Config& entry : config.tables("species")) {
     SpeciesSettings s;
     s.name = entry.text("name");
+    if (!is_plain_name(s.name))
+      entry.fail("name", "use letters, digits, _ and -: it goes into file columns");
     for (const SpeciesSettings& other : species)
       if (other.name == s.name)
         entry.fail("name", fmt::format("species '{}' stands here twice", s.name));
@@ -154,7 +156,9 @@ std::vector<WallLayer> read_layers(const Config& wall, double thickness) {
     if (entry.has("count")) {
       layer.count = entry.integer("count");
       if (layer.count < 1) entry.fail("count", "must be positive");
-      if (D != 2) entry.fail("count", "a layer of a 3D wall is a grid: give spacing instead");
+      constexpr int tangential = D - 1;
+      if (tangential > 1)
+        entry.fail("count", "a layer of this wall is a grid: give spacing instead");
     } else {
       layer.spacing = entry.positive("spacing");
     }

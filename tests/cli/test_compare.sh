@@ -57,6 +57,12 @@ expect_exit 0 compare box --solvers pcg,cholmod,picard-deflated --tolerance 1e-6
   --set solver.name=picard --set solver.stopping=increment --set output.pictures=false
 expect test "$(grep -c ',1e-06,1,' box_table/compare.csv)" -eq 3
 
+# Nothing moves an ideal gas at rest without noise: errors of a zero answer are absolute.
+expect_exit 0 compare box --solvers pcg,cholmod --tolerance 1e-6 --steps 1 --out rest --set fluid.a=0.0 \
+  --set fluid.kT=0.0 --set output.pictures=false
+expect test "$(grep -Ec '^[a-z]+,1e-06,1,0,0,0,' rest/compare.csv)" -eq 2
+expect test "$(grep -ci nan "$out_text")" -eq 0
+
 # --- what goes wrong ---
 expect_error 1 compare channel --solvers pgc --out wrong -- pgc "\"pcg\"" cholmod
 expect_error 1 compare channel --solvers pcg --tolerance 2 --out wrong -- --tolerance 2

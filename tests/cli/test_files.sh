@@ -140,7 +140,7 @@ for name in sorted(glob.glob(f"{run}/trajectory.*.h5")):
         assert np.isfinite(r).all() and (r >= 0.0).all() and (r < 4.0).all()
         assert np.allclose(p["position/time"][:], 0.005 * p["position/step"][:])
         steps += list(p["position/step"][:])
-assert steps == list(range(4, 41, 4)), steps
+assert steps == list(range(0, 41, 4)), steps
 with h5py.File(f"{run}/checkpoint.h5") as f:
     c = f["components"]
     assert c["run/counts"][0] == 40

@@ -50,7 +50,7 @@ def compare_checkpoints():
     assert one.keys() == other.keys(), one.keys() ^ other.keys()
     for name in one:
         # Seconds differ; the case names the options of its own part.
-        if name in ("components/run/phase_seconds", "components/run/case"):
+        if name in ("components/run/phase_seconds", "components/run/wall_seconds", "components/run/case"):
             continue
         if not with_files and name.startswith("components/output/"):
             continue
@@ -214,6 +214,67 @@ cp part_copy/checkpoint.h5 refused/checkpoint.h5
 expect diff -r part_copy refused
 head -n 3 part_copy/thermo_series.csv >refused/thermo_series.csv
 expect_error 3 run channel --restart refused/checkpoint.h5 -- thermo_series.csv
+
+# --- another start file: the particles of the checkpoint go on, and what is measured is theirs ---
+write_periodic mixed
+sed -i '/^density/d' mixed/case.toml
+cat >>mixed/case.toml <<'CASE'
+
+[[species]]
+name = "a"
+fraction = 0.75
+
+[[species]]
+name = "b"
+fraction = 0.25
+
+[start]
+from = "file"
+file = "few.csv"
+
+[[observe]]
+kind = "rdf"
+every = 5
+
+[[observe]]
+kind = "msd"
+window = 0.05
+every = 1
+CASE
+# start_csv EVERY: 64 particles on a grid, one of so many of species b.
+start_csv() {
+  printf 'x,y,species\n'
+  local k species
+  for ((k = 0; k < 64; k++)); do
+    species=a
+    [ $((k % $1)) -eq 0 ] && species=b
+    printf '%d.%d,%d.%d,%s\n' $((k / 16)) $((k / 8 % 2 * 5)) $((k % 8 / 2)) $((k % 2 * 5)) $species
+  done
+}
+start_csv 4 >mixed/few.csv
+start_csv 3 >mixed/many.csv
+expect_exit 0 run mixed --out mixed_whole
+expect_exit 0 run mixed --set run.duration=0.07 --out mixed_part
+expect_exit 0 run mixed --set 'start.file="many.csv"' --restart mixed_part/checkpoint.h5
+same_run mixed_whole mixed_part
+
+# --- a walled trajectory starts a walled case, also with particles behind a soft wall's surface ---
+expect_exit 0 run channel --set wall.0.stiffness=5.0 --set wall.1.stiffness=5.0 --set run.duration=0.6 --out soft
+frames=$(find soft -name 'trajectory.*.h5' | sort | tail -n 1)
+if have_h5py; then
+  expect "$python" -c "
+import h5py
+p = h5py.File('$frames')['particles/all']
+y = p['position/value'][-1][p['group'][()] == 0][:, 1]
+assert len(y) == 48 and ((y < 1.0) | (y > 4.0)).any(), y"
+fi
+cp -r channel seeded
+sed -i '/^density/d' seeded/case.toml
+seeded() { run seeded --set start.from=file --set "start.file=\"../$frames\"" --set run.duration=0.05 "$@"; }
+expect_exit 0 seeded --out seeded_run
+expect_text "$out_text" '48 free particles'
+expect_error 1 seeded --set 'box.size=[4.0, 5.5]' --out other_box -- "$frames" 'direction y' 5.5 box.size
+expect test ! -e other_box
 
 # --- threads: enough particles that they share the work ---
 # Waiting threads must not spin on a machine with other work.

@@ -1,6 +1,6 @@
 #pragma once
 // Real DPD configurations for the contract tests: three models, three geometries, two dimensions.
-#include <memory>
+#include <map>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -80,6 +80,15 @@ class Instant {
 
   const odpd::Resistance<D>& resistance() const { return dynamics.resistance(); }
 };
+
+/// The instant of these arguments, made once in a program: filling and relaxing a box takes longer
+/// than the checks of it.
+template <int D>
+const Instant<D>& instant_of(Model model, Geometry geometry, double length, bool hold = false) {
+  static std::map<std::tuple<Model, Geometry, double, bool>, Instant<D>> made;
+  return made.try_emplace({model, geometry, length, hold}, model, geometry, length, hold)
+      .first->second;
+}
 
 inline std::vector<double> product(const odpd::System& system, const std::vector<double>& x) {
   std::vector<double> y(x.size());

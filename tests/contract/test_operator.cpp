@@ -26,9 +26,9 @@ class Operator : public ::testing::TestWithParam<Case> {
   template <class Check>
   void run(const Check& check) const {
     if (std::get<2>(GetParam()) == 2) {
-      check(Instant<2>(model(), geometry(), 4.0));
+      check(contract::instant_of<2>(model(), geometry(), 4.0));
     } else {
-      check(Instant<3>(model(), geometry(), 3.1));
+      check(contract::instant_of<3>(model(), geometry(), 3.1));
     }
   }
 };

@@ -56,9 +56,9 @@ class Solvers : public ::testing::TestWithParam<std::tuple<Choice, Geometry, int
     for (const Model model : {Model::central, Model::transverse, Model::far_friction}) {
       SCOPED_TRACE("model " + contract::name(model));
       if (std::get<2>(GetParam()) == 2) {
-        check(Instant<2>(model, geometry(), 6.0, hold));  // 144 free particles
+        check(contract::instant_of<2>(model, geometry(), 6.0, hold));  // 144 free particles
       } else {
-        check(Instant<3>(model, geometry(), 3.7, hold));  // 203
+        check(contract::instant_of<3>(model, geometry(), 3.7, hold));  // 203
       }
     }
   }
@@ -154,7 +154,8 @@ TEST_P(Solvers, SolveTheHeldProblem) {
     EXPECT_LT(distance(x, exact), 1e-5);
     expect_zero_mean(instant, x);
     if (geometry() == Geometry::walls) {
-      const Instant<D> free(Model::central, geometry(), D == 2 ? 6.0 : 3.7, false);
+      const auto& free =
+          contract::instant_of<D>(Model::central, geometry(), D == 2 ? 6.0 : 3.7, false);
       EXPECT_GT(distance(exact, reference(free)), 1e-3) << "the free fluid moves on the whole";
     }
   });

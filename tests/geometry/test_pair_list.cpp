@@ -205,6 +205,29 @@ TYPED_TEST(PairListTest, NeighbourhoodsNameEveryCellOnce) {
   }
 }
 
+// Pairs far from each other in a box of many more cells than particles, also a long one.
+TYPED_TEST(PairListTest, ASparseBoxHasFewCells) {
+  constexpr int D = TypeParam::D;
+  for (const double width : {1e6, 3.0}) {
+    Box<D> box = make_box<D>(width, 1);
+    box.size[0] = 1e6;
+    auto r = support::random_points<D>(Vec<D>{}, box.size, 300, 5);
+    const auto steps = support::random_points<D>(Vec<D>{}, support::uniform_vec<D>(0.8), 300, 6);
+    for (std::size_t i = 0; i < 300; ++i) {
+      r.push_back(r[i] + steps[i]);
+      box.wrap(r.back());
+    }
+    const CellList<D> cells(box, 1.2, r);
+    EXPECT_LE(cells.cells(), 4 * 600 + 1);
+    EXPECT_GE(cells.cells(), 600) << "yet about one per particle";
+    PairList<D> list(box, 1.0, 0.2);
+    list.update(r);
+    const Rows expected = brute_force(box, r, 1.2);
+    EXPECT_EQ(rows_of(list, box, r, 1.2), expected);
+    EXPECT_GE(list.pairs(), 150);
+  }
+}
+
 // Mean distance in memory of pairs closer than the cutoff.
 template <int D>
 double memory_distance(const Box<D>& box, const std::vector<Vec<D>>& r) {

@@ -23,6 +23,7 @@ struct Lonely {
     const auto drop = support::random_points<D>(support::uniform_vec<D>(1.0),
                                                 support::uniform_vec<D>(2.5), D == 2 ? 25 : 60, 1);
     for (const auto& r : drop) fluid.particles.add(r, 0, 0);
+    fluid.particles.add(support::uniform_vec<D>(1.75), 0, 1);
   }
   /// A particle at (8, 8, 8) + offset; known ones do not need neighbours.
   std::int64_t add(const Vec<D>& offset, bool known = false) {

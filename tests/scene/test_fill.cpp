@@ -179,19 +179,22 @@ fraction = 0.75
   expect_error<ConfigError>([&] { Scene<3>{s}; }, {"170", "180"});
 }
 
-TEST(Fill, StartPositionsMustLieInTheFluid) {
+// Behind a wall's surface as well, where a trajectory has them.
+TEST(Fill, StartPositionsMustLieInTheBox) {
   SceneSettings<2> s = settings<2>(channel);
   s.start = StartKind::file;
   s.start_file = "points.txt";
   s.relax_sweeps = 0;
-  s.start_positions = {{{3.0, 5.0}}, {{-1.0, 1.0}}, {{25.0, 11.0}}};
+  s.start_positions = {{{3.0, 5.0}},   {{-1.0, 1.0}}, {{25.0, 11.0}}, {{1.0, 0.97}},
+                       {{2.0, 11.03}}, {{3.0, 0.0}},  {{4.0, 12.0}}};
   const Scene<2> scene(s);
-  EXPECT_EQ(count_group(scene, 0), 3);
+  EXPECT_EQ(count_group(scene, 0), 7);
   EXPECT_EQ(scene.particles().position[141], (Vec<2>{{9.0, 1.0}})) << "wrapped where periodic";
   EXPECT_EQ(scene.particles().position[142], (Vec<2>{{5.0, 11.0}}));
-  for (const double y : {0.99, 11.01, -3.0, std::nan("")}) {
+  EXPECT_EQ(scene.particles().position[143], (Vec<2>{{1.0, 0.97}})) << "where it was";
+  for (const double y : {-0.01, 12.01, -3.0, std::nan("")}) {
     s.start_positions[1] = {{4.0, y}};
-    expect_error<ConfigError>([&] { Scene<2>{s}; }, {"points.txt", "particle 1", "from 1 to 11"});
+    expect_error<ConfigError>([&] { Scene<2>{s}; }, {"points.txt", "particle 1", "from 0 to 12"});
   }
 }
 

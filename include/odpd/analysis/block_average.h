@@ -2,8 +2,8 @@
 // Means and standard errors of correlated samples by block averaging (Flyvbjerg & Petersen 1989).
 //
 // Samples are vectors of fixed width. At most 64 blocks are kept; when they are full, neighbours are merged and blocks
-// become twice as long. The standard error is the largest over the block lengths that leave at least 16 blocks, and
-// NaN with fewer blocks than that.
+// become twice as long. The standard error is the largest over the block lengths that leave at least 16 blocks, each
+// enlarged where neighbouring blocks are still correlated, and NaN with fewer blocks than that.
 #include <cstdint>
 #include <span>
 #include <string>

@@ -3,8 +3,8 @@
 //
 //   D = (1/(2 d)) d/dt <|r(t) - r(0)|^2>          (Phan-Thien et al. 2016, eq. 52)
 //
-// as the least-squares slope between the lags `fit_from` and `window`, one value per time origin (origins every quarter
-// window), averaged over origins. `directions` leaves out those along a flow.
+// as the least-squares slope between the lags `fit_from` and `window`. One window begins where the last one ended, so
+// that each gives an independent sample; one full window gives a mean. `directions` leaves out those along a flow.
 #include "odpd/analysis/block_average.h"
 #include "odpd/analysis/observer.h"
 
@@ -30,23 +30,18 @@ class Msd : public Observer<D> {
   void load(const StateReader& in) override;
 
  private:
-  struct Origin {
-    std::int64_t sample = 0;       // index of the sample it was taken at
-    std::vector<double> position;  // unwrapped, by identity
-    std::vector<double> msd;       // [lag * species + A], filled as lags come
-  };
-  void finish(const Origin& origin);
+  void finish_window(const std::vector<double>& population);
 
   MsdSettings msd_;
   const Scene<D>& scene_;
   double lag_time_;
-  std::int64_t lags_, spacing_;
+  std::int64_t lags_;
   std::size_t species_;
-  std::vector<double> population_;
-  std::int64_t samples_ = 0;
-  std::vector<Origin> origins_;
-  BlockAverage curve_;      // msd by lag and species, a sample per finished origin
-  BlockAverage diffusion_;  // D per species, then D over all, a sample per finished origin
+  std::int64_t lag_ = 0;        // samples since the window began
+  std::vector<double> origin_;  // unwrapped positions there, by identity; empty before the first
+  std::vector<double> window_;  // [lag * species + A], filled as lags come
+  BlockAverage curve_;          // msd by lag and species, a sample per window
+  BlockAverage diffusion_;      // D per species, then D over all, a sample per window
   std::vector<double> newest_;
 };
 

@@ -24,12 +24,13 @@ class Rdf : public Observer<D> {
 
  private:
   std::size_t pair_index(std::int32_t a, std::int32_t b) const;
+  /// Per column: turns pair counts of these particles into g.
+  std::vector<double> factors(const Particles<D>& particles) const;
 
   double r_max_;
   std::size_t bins_;
   const Scene<D>& scene_;
   std::size_t species_;
-  std::vector<double> norm_;  ///< per column: turns pair counts into g
   BlockAverage average_;
   std::vector<double> newest_;
 };

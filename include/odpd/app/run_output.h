@@ -17,13 +17,14 @@
 
 #include "odpd/app/simulation.h"
 #include "odpd/io/csv.h"
+#include "odpd/io/run_lock.h"
 #include "odpd/io/trajectory.h"
 
 namespace odpd {
 
-/// Makes `directory` ready for a new run: an earlier run there is moved aside to `<directory>.N`. Throws IoError when a
-/// file, or a directory that is no run of odpd and not empty, is in the way.
-void prepare_run_directory(const std::filesystem::path& directory);
+/// Makes `directory` ready for a new run and locks it: an earlier run there is moved aside to `<directory>.N`. Throws
+/// IoError when a file, a running odpd, or a directory that is no run of odpd and not empty, is in the way.
+RunLock prepare_run_directory(const std::filesystem::path& directory);
 
 template <int D>
 class RunOutput {
@@ -40,8 +41,10 @@ class RunOutput {
   void checkpoint();
   /// Writes what is buffered, as far as possible: for the way out after an error.
   void salvage() noexcept;
-  /// The last frame for ParaView, tables and pictures.
-  void finish(const Results& results);
+  /// The last frame for ParaView and the last checkpoint.
+  void close();
+  /// Tables and pictures.
+  void write_results(const Results& results);
 
   const std::filesystem::path& directory() const { return directory_; }
 

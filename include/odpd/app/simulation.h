@@ -49,6 +49,7 @@ class Simulation {
 
  private:
   const StepRecord<D>& named_step();
+  void check_observables(const Config& config) const;
 
   Config config_;
   CaseSettings settings_;
@@ -58,6 +59,7 @@ class Simulation {
   std::unique_ptr<Integrator<D>> integrator_;
   std::vector<std::unique_ptr<Observer<D>>> observers_;
   std::int64_t alarm_crossings_ = 0;
+  bool alarmed_ = false;  // the user was told once
   double earlier_seconds_ = 0.0;
   Stopwatch watch_;
 };

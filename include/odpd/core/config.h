@@ -94,6 +94,9 @@ class Config {
   ConfigNode* node_;                  // the table in that tree
 };
 
+/// True for a word of letters, digits, _ and -: safe as part of a file name or a column.
+bool is_plain_name(const std::string& word);
+
 /// The candidate closest to `word` by edit distance, or "" when none is near (for "did you mean").
 std::string nearest_name(const std::string& word, const std::vector<std::string>& candidates);
 

@@ -65,7 +65,9 @@ class Dynamics {
   /// not converge or a velocity is not finite.
   void solve(Stage<D>& stage, const std::vector<double>& xi, std::vector<double>& guess);
   /// position + dt velocity, wrapped; a particle that moves further than half the box throws, as in `move`.
-  std::vector<Vec<D>> displaced(const std::vector<Vec<D>>& velocity, double dt) const;
+  /// Adds the mirror's catches to `crossings`.
+  std::vector<Vec<D>> displaced(const std::vector<Vec<D>>& velocity, double dt,
+                                std::int64_t& crossings) const;
   /// Moves the particles by dt velocity and remembers it; returns the mirror's catches. Throws SolverError when a
   /// particle moves further than half the box in one step.
   std::int64_t move(const std::vector<Vec<D>>& velocity, double dt);

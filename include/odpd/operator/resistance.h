@@ -25,7 +25,8 @@ class Resistance : public System {
 
   /// Takes over the edges of `network`; `shift` (mass/time) is added to the diagonal, e.g. 2 m/dt.
   /// Throws SolverError for a rattler: a free particle whose friction block is singular at shift = 0, naming it by
-  /// identity, its neighbours and the cures.
+  /// identity, its neighbours and the cures; and for a group of particles out of reach of all others. (Inner floppy modes
+  /// of such a group, as in a chain with central friction, are left to the solver.)
   void rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs, const Particles<D>& particles,
                std::span<const Vec<D>> positions, double shift);
 
@@ -59,6 +60,7 @@ class Resistance : public System {
   Vec<D> row_product(std::size_t node, std::span<const double> x) const;
   void fill_row(std::size_t node, std::int32_t particle, const PairNetwork<D>& network,
                 const DofMap<D>& dofs);
+  void check_clusters(const DofMap<D>& dofs, const Particles<D>& particles) const;
   void check_rattlers(const PairNetwork<D>& network, const DofMap<D>& dofs,
                       const Particles<D>& particles) const;
 

@@ -14,7 +14,7 @@ template <int D>
 class Scene : public Surroundings<D> {
  public:
   /// Builds the model, places walls and fluid, and relaxes overlaps. Throws ConfigError (box too small, more particles
-  /// of a species than the fluid has, start positions inside a wall or outside the box).
+  /// of a species than the fluid has, start positions outside the box).
   explicit Scene(SceneSettings<D> settings);
 
   const SceneSettings<D>& settings() const { return settings_; }
