@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <random>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -113,7 +114,11 @@ inline odpd::BlockCsr matrix(const Network& net, double shift = 0.0) {
 inline odpd::AssembledSystem system(int dimension, Kind kind, std::uint32_t seed = 1,
                                     double shift = 0.0) {
   const double wall = kind == Kind::null_space ? 0.0 : 1.0;
-  const Network net = network(dimension, dimension == 2 ? 220 : 400, true, wall, seed);
+  // Made once in a program: under sanitizers this takes longer than most solvers.
+  static std::map<std::tuple<int, double, std::uint32_t>, Network> made;
+  auto [place, absent] = made.try_emplace({dimension, wall, seed});
+  Network& net = place->second;
+  if (absent) net = network(dimension, dimension == 2 ? 220 : 400, true, wall, seed);
   return odpd::AssembledSystem(matrix(net, shift), kind == Kind::null_space, kind == Kind::held);
 }
 
