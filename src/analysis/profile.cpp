@@ -117,94 +117,113 @@ void Profile<D>::add_results(Results& results) const {
 }
 
 template <int D>
-void Profile<D>::add_fit(Results& results, Chart& chart) const {
-  const std::string& name = this->settings().name;
-  const int degree = profile_.fit == ProfileFit::linear ? 1 : 2;
+std::optional<typename Profile<D>::FittedBins> Profile<D>::fit_bins() const {
   const auto component = static_cast<std::size_t>(profile_.component) + 1;
-  const double middle = 0.5 * (low_ + high_);
+  FittedBins fitted;
   std::vector<double> x, y, error;
-  std::vector<BlockAverage::RatioTerm> bins;
-  double density = 0.0;
   for (std::size_t b = 0; b < static_cast<std::size_t>(profile_.bins); ++b) {
     if (centre(b) < profile_.fit_from || centre(b) > profile_.fit_to) continue;
     const std::vector<BlockAverage::RatioTerm> term{{1.0, column(b, component), column(b, 0)}};
     const double e = average_.ratio_error(term);
-    if (!(e > 0.0)) {
-      results.notes.push_back(
-          fmt::format("{}: too few samples for errors, so no fit: run longer", name));
-      return;
-    }
-    x.push_back(centre(b) - middle);
+    if (!(e > 0.0)) return std::nullopt;
+    x.push_back(centre(b) - 0.5 * (low_ + high_));
     y.push_back(average_.ratio(column(b, component), column(b, 0)));
     error.push_back(e);
-    bins.push_back(term[0]);
-    density += average_.mean(column(b, 0));
+    fitted.bins.push_back(term[0]);
+    fitted.density += average_.mean(column(b, 0));
   }
-  const PolynomialFit fit = fit_polynomial(degree, x, y, error);
-  density *=
+  fitted.fit = fit_polynomial(profile_.fit == ProfileFit::linear ? 1 : 2, x, y, error);
+  fitted.density *=
       static_cast<double>(profile_.bins) / scene_.fluid_volume() / static_cast<double>(x.size());
-  const auto coefficient_error = [&](std::size_t p) {
-    std::vector<BlockAverage::RatioTerm> terms = bins;
-    for (std::size_t k = 0; k < terms.size(); ++k) terms[k].weight = fit.weight[p][k];
-    return average_.ratio_error(terms);
-  };
-  const double nan = std::nan("");
-  results.scalars.push_back({name + ".reduced_chi_square", fit.reduced_chi_square, nan});
-  results.scalars.push_back({name + ".bulk_density", density, nan});
+  return fitted;
+}
 
-  const int below = scene_.settings().wall_at(profile_.axis, false);
-  const int above = scene_.settings().wall_at(profile_.axis, true);
-  const bool channel = below >= 0 && above >= 0;
-  const double h = high_ - low_;
-  const double u_low = channel ? scene_.known_velocity(below + 1, 0.0)[profile_.component] : 0.0;
-  const double u_high = channel ? scene_.known_velocity(above + 1, 0.0)[profile_.component] : 0.0;
-  Curve line{.title = degree == 1 ? "linear fit" : "parabola fit",
+template <int D>
+double Profile<D>::coefficient_error(const FittedBins& fitted, std::size_t power) const {
+  std::vector<BlockAverage::RatioTerm> terms = fitted.bins;
+  for (std::size_t k = 0; k < terms.size(); ++k) terms[k].weight = fitted.fit.weight[power][k];
+  return average_.ratio_error(terms);
+}
+
+template <int D>
+void Profile<D>::add_fit(Results& results, Chart& chart) const {
+  const std::string& name = this->settings().name;
+  const std::optional<FittedBins> fitted = fit_bins();
+  if (!fitted) {
+    results.notes.push_back(
+        fmt::format("{}: too few samples for errors, so no fit: run longer", name));
+    return;
+  }
+  const double nan = std::nan("");
+  results.scalars.push_back({name + ".reduced_chi_square", fitted->fit.reduced_chi_square, nan});
+  results.scalars.push_back({name + ".bulk_density", fitted->density, nan});
+  const bool linear = profile_.fit == ProfileFit::linear;
+  Curve line{.title = linear ? "linear fit" : "parabola fit",
              .x = {},
              .y = {},
              .error = {},
              .line = true,
              .points = false};
   for (int k = 0; k <= 50; ++k) {
-    line.x.push_back(low_ + h * k / 50.0);
-    line.y.push_back(fit(line.x.back() - middle));
+    line.x.push_back(low_ + (high_ - low_) * k / 50.0);
+    line.y.push_back(fitted->fit(line.x.back() - 0.5 * (low_ + high_)));
   }
   chart.curves.push_back(std::move(line));
-  if (degree == 1) {
-    const double slope = fit.coefficient[1];
-    const double slope_error = coefficient_error(1);
-    results.scalars.push_back({name + ".slope", slope, slope_error});
-    if (channel && u_high != u_low) {
-      const double expected = (u_high - u_low) / h;
-      results.scalars.push_back(
-          {name + ".slope_ratio", slope / expected, slope_error / std::abs(expected)});
-      results.scalars.push_back({name + ".slip_length", 0.5 * h * (expected / slope - 1.0),
-                                 0.5 * h * std::abs(expected / (slope * slope)) * slope_error});
-      results.notes.push_back(fmt::format(
-          "{}: H_eff = {} is the distance between the wall surfaces (the layers at depth "
-          "0); slope_ratio compares with (U_high - U_low)/H_eff",
-          name, h));
-      chart.curves.push_back({.title = "no slip at the surfaces",
-                              .x = {low_, high_},
-                              .y = {u_low, u_high},
-                              .error = {},
-                              .line = true,
-                              .points = false});
-    }
-    return;
+  const int below = scene_.settings().wall_at(profile_.axis, false);
+  const int above = scene_.settings().wall_at(profile_.axis, true);
+  std::optional<WallSpeeds> walls;
+  if (below >= 0 && above >= 0)
+    walls = WallSpeeds{scene_.known_velocity(below + 1, 0.0)[profile_.component],
+                       scene_.known_velocity(above + 1, 0.0)[profile_.component]};
+  if (linear) {
+    add_linear(*fitted, walls, results, chart);
+  } else {
+    add_parabola(*fitted, walls, results);
   }
-  const double curvature = fit.coefficient[2];
-  const double curvature_error = coefficient_error(2);
-  results.scalars.push_back({name + ".curvature", curvature, curvature_error});
+}
+
+template <int D>
+void Profile<D>::add_linear(const FittedBins& fitted, const std::optional<WallSpeeds>& walls,
+                            Results& results, Chart& chart) const {
+  const std::string& name = this->settings().name;
+  const double slope = fitted.fit.coefficient[1];
+  const double error = coefficient_error(fitted, 1);
+  results.scalars.push_back({name + ".slope", slope, error});
+  if (!walls || walls->high == walls->low) return;
+  const double h = high_ - low_;
+  const double expected = (walls->high - walls->low) / h;
+  results.scalars.push_back({name + ".slope_ratio", slope / expected, error / std::abs(expected)});
+  results.scalars.push_back({name + ".slip_length", 0.5 * h * (expected / slope - 1.0),
+                             0.5 * h * std::abs(expected / (slope * slope)) * error});
+  results.notes.push_back(
+      fmt::format("{}: H_eff = {} is the distance between the wall surfaces (the layers at depth "
+                  "0); slope_ratio "
+                  "compares with (U_high - U_low)/H_eff",
+                  name, h));
+  chart.curves.push_back({.title = "no slip at the surfaces",
+                          .x = {low_, high_},
+                          .y = {walls->low, walls->high},
+                          .error = {},
+                          .line = true,
+                          .points = false});
+}
+
+template <int D>
+void Profile<D>::add_parabola(const FittedBins& fitted, const std::optional<WallSpeeds>& walls,
+                              Results& results) const {
+  const std::string& name = this->settings().name;
+  const std::vector<double>& c = fitted.fit.coefficient;
+  const double error = coefficient_error(fitted, 2);
+  results.scalars.push_back({name + ".curvature", c[2], error});
   const double f = scene_.settings().body_force[profile_.component];
-  if (!channel || f == 0.0) return;
-  const double viscosity = density * f / (-2.0 * curvature);
+  if (!walls || f == 0.0) return;
+  const double viscosity = fitted.density * f / (-2.0 * c[2]);
+  results.scalars.push_back({name + ".viscosity", viscosity, std::abs(viscosity / c[2]) * error});
+  const double top = c[0] - c[1] * c[1] / (4.0 * c[2]);
+  results.scalars.push_back({name + ".maximum", top, coefficient_error(fitted, 0)});
+  const double half_width = std::sqrt((0.5 * (walls->low + walls->high) - top) / c[2]);
   results.scalars.push_back(
-      {name + ".viscosity", viscosity, std::abs(viscosity / curvature) * curvature_error});
-  const double top =
-      fit.coefficient[0] - fit.coefficient[1] * fit.coefficient[1] / (4.0 * curvature);
-  results.scalars.push_back({name + ".maximum", top, coefficient_error(0)});
-  const double half_width = std::sqrt((0.5 * (u_low + u_high) - top) / curvature);
-  results.scalars.push_back({name + ".slip_length", half_width - 0.5 * h, nan});
+      {name + ".slip_length", half_width - 0.5 * (high_ - low_), std::nan("")});
 }
 
 template <int D>

@@ -48,15 +48,7 @@ std::string usage_error(const CLI::App& app, const std::string& reason) {
   return "there is no command '" + *word + "', only run, compare, info; see odpd --help";
 }
 
-int command_line(int argc, char** argv) {
-  CLI::App app{"odpd: creeping flow of dissipative-particle fluids"};
-  app.set_version_flag("--version", "odpd " ODPD_VERSION);
-  app.require_subcommand(1);
-  app.footer(exit_codes);
-  bool quiet = false;
-  app.add_flag("--quiet", quiet, "only warnings and errors on stderr beside the live line");
-
-  odpd::RunOptions run;
+CLI::App* add_run(CLI::App& app, odpd::RunOptions& run, bool& quiet) {
   CLI::App* run_command = app.add_subcommand("run", "run a case and check its results");
   add_case(*run_command, run.case_path, run.overrides, quiet);
   run_command->add_option(
@@ -74,8 +66,11 @@ int command_line(int argc, char** argv) {
       ->add_flag("--dry-run", run.dry_run,
                  "print what would be modelled, its size and an estimate of the time")
       ->excludes(restart);
+  return run_command;
+}
 
-  odpd::CompareOptions compare;
+CLI::App* add_compare(CLI::App& app, odpd::CompareOptions& compare, std::string& stopping,
+                      bool& quiet) {
   CLI::App* compare_command = app.add_subcommand(
       "compare", "solve one frozen step of a case with every backend: iterations, error, seconds");
   add_case(*compare_command, compare.case_path, compare.overrides, quiet);
@@ -87,7 +82,6 @@ int command_line(int argc, char** argv) {
                    "tolerances, separated by commas [1e-2 to 1e-10]")
       ->delimiter(',')
       ->check(CLI::Range(1e-16, 1.0));
-  std::string stopping = "residual";
   compare_command
       ->add_option(
           "--stopping", stopping,
@@ -102,7 +96,22 @@ int command_line(int argc, char** argv) {
   compare_command->add_option("--threads", compare.threads, "threads")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
+  return compare_command;
+}
 
+int command_line(int argc, char** argv) {
+  CLI::App app{"odpd: creeping flow of dissipative-particle fluids"};
+  app.set_version_flag("--version", "odpd " ODPD_VERSION);
+  app.require_subcommand(1);
+  app.footer(exit_codes);
+  bool quiet = false;
+  app.add_flag("--quiet", quiet, "only warnings and errors on stderr beside the live line");
+
+  odpd::RunOptions run;
+  const CLI::App* run_command = add_run(app, run, quiet);
+  odpd::CompareOptions compare;
+  std::string stopping = "residual";
+  const CLI::App* compare_command = add_compare(app, compare, stopping, quiet);
   CLI::App* info_command =
       app.add_subcommand("info", "version, build options, backends and machine");
 

@@ -10,7 +10,10 @@
 //             b = ((U_high - U_low)/slope - H)/2 with H the distance between the wall surfaces
 //   parabola  u = c_0 + c_1 x + c_2 x^2; with a body force f also the viscosity n f/(-2 c_2), n over the fitted bins,
 //             and the slip length from where the parabola reaches the walls' velocity
+#include <optional>
+
 #include "odpd/analysis/block_average.h"
+#include "odpd/analysis/least_squares.h"
 #include "odpd/analysis/observer.h"
 
 namespace odpd {
@@ -44,7 +47,23 @@ class Profile : public Observer<D> {
   std::int64_t bin_of(const Vec<D>& r) const;
   double centre(std::size_t bin) const;
   Table table() const;
+  // The fit over its bins, and the column pairs whose ratios it is linear in; none without errors to weigh them by.
+  struct FittedBins {
+    PolynomialFit fit;
+    std::vector<BlockAverage::RatioTerm> bins;
+    double density = 0.0;  // mean over these bins
+  };
+  // Velocities of two facing walls along the fitted component.
+  struct WallSpeeds {
+    double low = 0.0, high = 0.0;
+  };
+  std::optional<FittedBins> fit_bins() const;
+  double coefficient_error(const FittedBins& fitted, std::size_t power) const;
   void add_fit(Results& results, Chart& chart) const;
+  void add_linear(const FittedBins& fitted, const std::optional<WallSpeeds>& walls,
+                  Results& results, Chart& chart) const;
+  void add_parabola(const FittedBins& fitted, const std::optional<WallSpeeds>& walls,
+                    Results& results) const;
 
   ProfileSettings profile_;
   const Scene<D>& scene_;

@@ -16,7 +16,7 @@ class CheckpointWriter {
   CheckpointWriter();
   CheckpointWriter(const CheckpointWriter&) = delete;  // components refer to it
   CheckpointWriter& operator=(const CheckpointWriter&) = delete;
-  /// The place of one component ("particles", "observer/0"); valid while this object lives.
+  /// The place of one component ("particles", "observer_0"); valid while this object lives.
   StateWriter& component(const std::string& name);
   void save(const std::filesystem::path& file) const;
 
