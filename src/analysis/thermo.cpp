@@ -23,8 +23,24 @@ void configurational_terms(const Scene<D>& scene, const Particles<D>& particles,
 }
 
 template <int D>
+double kinetic_temperature(const Scene<D>& scene, const Particles<D>& particles,
+                           const std::vector<Vec<D>>& velocity) {
+  const double mass = scene.settings().mass;
+  if (mass == 0.0) return 0.0;
+  const auto n = static_cast<double>(particles.free_count());
+  const bool conserved = scene.conserves_momentum();
+  Vec<D> mean{};
+  for (std::size_t i = 0; i < velocity.size() && conserved; ++i)
+    if (particles.is_free(i)) mean += (1.0 / n) * velocity[i];
+  double square = 0.0;
+  for (std::size_t i = 0; i < velocity.size(); ++i)
+    if (particles.is_free(i)) square += dot(velocity[i] - mean, velocity[i] - mean);
+  return mass * square / (D * (conserved ? n - 1.0 : n));
+}
+
+template <int D>
 Thermo<D>::Thermo(ObserverSettings settings, const Scene<D>& scene)
-    : Observer<D>(std::move(settings)), scene_(scene), average_(4) {}
+    : Observer<D>(std::move(settings)), scene_(scene), average_(5) {}
 
 template <int D>
 void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
@@ -41,13 +57,13 @@ void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepR
   const double volume = scene_.fluid_volume();
   newest_ = {(fixed_sum(network.u) + wall_energy) / n,
              (n * scene_.largest_kT() + fixed_sum(virial) / D) / volume, fixed_sum(force_squared),
-             fixed_sum(laplacian)};
+             fixed_sum(laplacian), kinetic_temperature(scene_, particles, record.v_start)};
   average_.add(newest_);
 }
 
 template <int D>
 std::vector<std::string> Thermo<D>::series_columns() const {
-  return {"energy_per_particle", "pressure", "force_squared", "laplacian"};
+  return {"energy_per_particle", "pressure", "force_squared", "laplacian", "kinetic_temperature"};
 }
 
 template <int D>
@@ -62,12 +78,19 @@ void Thermo<D>::add_results(Results& results) const {
   // Without a conservative force this is 0/0: undefined, and written as null.
   results.scalars.push_back(
       {prefix + "config_temperature", average_.ratio(2, 3), average_.ratio_error(terms)});
+  if (scene_.settings().mass > 0.0)
+    results.scalars.push_back(
+        {prefix + "kinetic_temperature", average_.mean(4), average_.standard_error(4)});
 }
 
 template void configurational_terms<2>(const Scene<2>&, const Particles<2>&, const Stage<2>&,
                                        std::vector<double>&, std::vector<double>&, double&);
 template void configurational_terms<3>(const Scene<3>&, const Particles<3>&, const Stage<3>&,
                                        std::vector<double>&, std::vector<double>&, double&);
+template double kinetic_temperature<2>(const Scene<2>&, const Particles<2>&,
+                                       const std::vector<Vec<2>>&);
+template double kinetic_temperature<3>(const Scene<3>&, const Particles<3>&,
+                                       const std::vector<Vec<3>>&);
 template class Thermo<2>;
 template class Thermo<3>;
 

@@ -54,8 +54,9 @@ void WallForce<D>::measure(const Clock&, const Particles<D>& particles,
   std::vector<Vec<D>> noise(record.start.position.size());
   if (!record.edge_noise.empty())
     add_edge_forces<D>(record.start.network, record.edge_noise, noise);
-  add_stage(particles, record.start, noise, record.has_corrector ? 0.5 : 1.0);
-  if (record.has_corrector) add_stage(particles, record.corrector, noise, 0.5);
+  add_stage(particles, record.start, noise, record.start_weight);
+  if (record.has_corrector())
+    add_stage(particles, record.corrector, noise, 1.0 - record.start_weight);
   const auto& settings = scene_.settings();
   for (std::size_t w = 0; w < settings.walls.size(); ++w) {
     const int facing = settings.wall_at(settings.walls[w].axis, !settings.walls[w].high);

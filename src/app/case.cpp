@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "odpd/core/error.h"
-#include "odpd/dynamics/integrator.h"
 #include "odpd/io/csv.h"
 #include "odpd/io/trajectory.h"
 
@@ -182,7 +181,7 @@ CaseSettings read_case(const Config& config, const std::string& name) {
   c.dimension = static_cast<int>(dimension);
   c.dynamics.seed = static_cast<std::uint64_t>(config.integer("seed", 1));
   const Config integrator = config.table("integrator");
-  c.integrator = integrator.choice("name", integrator_names(), "trapezoidal");
+  c.integrator = read_integrator(integrator);
   c.clock.dt = integrator.positive("dt");
   c.solver = read_solver(config.table("solver"), c.dynamics.hold_centre_of_mass);
   const Config neighbours = config.table("neighbours");

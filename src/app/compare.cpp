@@ -73,9 +73,14 @@ FrozenProblem<D> freeze(Simulation<D>& simulation, std::int64_t steps) {
   const bool hold = simulation.settings().dynamics.hold_centre_of_mass;
   FrozenProblem<D> problem{
       Resistance<D>(dynamics.box(), hold), Resistance<D>(dynamics.box(), true), {}, {}, {}};
-  problem.b = dynamics.right_hand_side(stage, xi);
+  // The first solve of a step with implicit friction.
+  problem.b = dynamics.force(stage);
+  const std::vector<double> q = dynamics.end_velocity();
+  const double inertia = dynamics.inertia(clock.dt);
+  for (std::size_t k = 0; k < problem.b.size(); ++k) problem.b[k] += xi[k] + inertia * q[k];
   for (Resistance<D>* r : {&problem.as_posed, &problem.held})
-    r->rebuild(stage.network, dynamics.dofs(), dynamics.particles(), stage.position, 0.0);
+    r->rebuild(stage.network, dynamics.dofs(), dynamics.particles(), stage.position,
+               inertia + dynamics.settings().zeta_0);
   problem.exact_as_posed = tightest(problem.as_posed, problem.b);
   problem.exact_held = tightest(problem.held, problem.b);
   return problem;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "odpd/core/parallel.h"
 
 namespace odpd {
@@ -19,13 +21,19 @@ std::string modelled(const Simulation<D>& simulation) {
               scene.model().conservative() ? "a > 0" : "a = 0");
   out +=
       line(scene.model().thermal(), "random force", scene.model().thermal() ? "kT > 0" : "kT = 0");
-  out += line(false, "inertia", "mass = 0: every step is a balance of forces");
+  const double mass = scene.settings().mass;
+  out += line(
+      mass > 0.0, "inertia",
+      mass > 0.0 ? fmt::format("mass = {}", mass) : "mass = 0: every step is a balance of forces");
+  out += line(scene.settings().zeta_0 > 0.0, "uniform drag",
+              scene.settings().zeta_0 > 0.0 ? "zeta_0 > 0, with its noise" : "none given");
   out += line(!scene.settings().walls.empty(), "walls",
               fmt::format("{} [[wall]]", scene.settings().walls.size()));
   const Vec<D>& f = scene.settings().body_force;
   out += line(dot(f, f) > 0.0, "body force", dot(f, f) > 0.0 ? "[body_force]" : "none given");
-  out += line(simulation.integrator().stages() > 1, "second solve per step",
-              fmt::format("integrator {}", simulation.integrator().name()));
+  const int solves = simulation.integrator().solves();
+  out += line(solves > 0, "solves per step",
+              fmt::format("{}, integrator {}", solves, simulation.integrator().name()));
   const std::string& solver = simulation.settings().solver.name;
   const bool assembled = solver == "eigen-cg" || solver == "cholmod" || solver == "petsc";
   out += line(assembled, "assembled matrix", fmt::format("solver {}", solver));
@@ -45,7 +53,9 @@ std::string dry_run_text(Simulation<D>& simulation) {
   dynamics.evaluate(particles.position, clock.time(), stage);
   const std::vector<double> xi = dynamics.draw_noise(stage, clock.step, clock.dt, edge_noise);
   std::vector<double> q(xi.size(), 0.0);
-  dynamics.solve(stage, xi, q);
+  std::vector<double> load = dynamics.force(stage);
+  for (std::size_t k = 0; k < load.size(); ++k) load[k] += xi[k];
+  dynamics.solve(stage, load, {dynamics.inertia(clock.dt), 0.0}, q);
   const double stage_seconds = watch.seconds();
 
   const std::int64_t free = particles.free_count();
@@ -68,7 +78,8 @@ std::string dry_run_text(Simulation<D>& simulation) {
       "  about {:.1f} MiB, about {:.3g} s at {:.3g} ms per stage (measured once, on {} "
       "thread(s))\n\n",
       mebibytes,
-      stage_seconds * simulation.integrator().stages() * static_cast<double>(clock.total_steps),
+      stage_seconds * std::max(simulation.integrator().solves(), 1) *
+          static_cast<double>(clock.total_steps),
       1e3 * stage_seconds, threads());
   return out + modelled(simulation);
 }

@@ -120,7 +120,7 @@ std::string summary_json(const Simulation<D>& simulation, const Results& results
   JsonObject json;
   json.set("case", settings.name).set("title", settings.title).set("version", ODPD_VERSION);
   json.set("dimension", D).set("seed", static_cast<std::int64_t>(settings.dynamics.seed));
-  json.set("integrator", settings.integrator).set("dt", clock.dt);
+  json.set("integrator", settings.integrator.name).set("dt", clock.dt);
   json.set("particles", simulation.scene().particles().size())
       .set("free_particles", free_particles(simulation));
   json.set("steps", clock.step)
@@ -150,7 +150,7 @@ std::string report_text(const Simulation<D>& simulation, const Results& results,
   out += fmt::format(
       "  {}D, {} free particles and {} of known velocity; {} at dt = {}, {} steps (t = {:.6g}){}\n",
       D, free_particles(simulation),
-      simulation.scene().particles().size() - free_particles(simulation), settings.integrator,
+      simulation.scene().particles().size() - free_particles(simulation), settings.integrator.name,
       clock.dt, clock.step, clock.time(), clock.finished() ? "" : ", interrupted");
   out += fmt::format(
       "  solver {} to {:g}: {:.1f} iterations per solve (most {}), worst true residual {:.2g}\n",

@@ -37,6 +37,14 @@ std::string difference(const Config& saved, const Config& current) {
   return {};
 }
 
+template <int D>
+DynamicsSettings dynamics_of(DynamicsSettings settings, const Scene<D>& scene) {
+  settings.mass = scene.settings().mass;
+  settings.zeta_0 = scene.settings().zeta_0;
+  settings.kT = scene.largest_kT();
+  return settings;
+}
+
 }  // namespace
 
 template <int D>
@@ -46,9 +54,12 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings)
       clock_(settings_.clock),
       scene_(scene_of<D>(config)),
       dynamics_(scene_.box(), scene_.particles(), scene_.model(), scene_,
-                make_solver(settings_.solver), settings_.dynamics),
+                make_solver(settings_.solver), dynamics_of(settings_.dynamics, scene_)),
       integrator_(make_integrator<D>(settings_.integrator)),
       observers_(make_observers(config, scene_, clock_)) {
+  if (const std::string why = mass_objection(settings_.integrator.name, scene_.settings().mass);
+      !why.empty())
+    config.table("integrator").fail("name", why);
   config.reject_unread();
   check_observables(config);
 }
@@ -57,7 +68,7 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings)
 template <int D>
 void Simulation<D>::check_observables(const Config& config) const {
   std::vector<std::string> names{"energy_per_particle", "pressure", "config_temperature",
-                                 "diffusion"};
+                                 "kinetic_temperature", "diffusion"};
   if (!scene_.settings().walls.empty()) names.push_back("alarm_crossings");
   for (const auto& observer : observers_) names.push_back(observer->settings().name);
   for (const Config& check : config.tables("check")) {
@@ -156,7 +167,8 @@ void Simulation<D>::save(CheckpointWriter& out) const {
   run.write("phase_seconds", std::vector<double>(phases.seconds.begin(), phases.seconds.end()));
   run.write("wall_seconds", std::vector<double>{wall_seconds()});
   const SolverStatistics& s = dynamics_.statistics();
-  run.write("solver_counts", std::vector<std::int64_t>{s.solves, s.iterations, s.most_iterations});
+  run.write("solver_counts",
+            std::vector<std::int64_t>{s.solves, s.iterations, s.most_iterations, s.clamped});
   run.write("solver_worst_residual", std::vector<double>{s.worst_residual});
   run.write_text("solver_problem", s.problem);
   scene_.particles().save(out.component("particles"));
@@ -191,6 +203,7 @@ void Simulation<D>::load(CheckpointReader& in) {
   s.solves = solver.at(0);
   s.iterations = solver.at(1);
   s.most_iterations = solver.at(2);
+  s.clamped = solver.at(3);
   s.worst_residual = run.read_doubles("solver_worst_residual").at(0);
   s.problem = run.read_text("solver_problem");
   const std::int64_t expected = scene_.particles().size();

@@ -22,7 +22,9 @@ Dynamics<D>::Dynamics(const Box<D>& box, Particles<D>& particles, const PairMode
       solver_(std::move(solver)),
       settings_(settings),
       list_(box, model.cutoff(), settings.skin),
-      resistance_(box, settings.hold_centre_of_mass) {}
+      resistance_(box, settings.hold_centre_of_mass) {
+  if (has_mass()) particles_.carry_inertia();
+}
 
 template <int D>
 const DofMap<D>& Dynamics<D>::dofs() {
@@ -66,47 +68,94 @@ void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage
 }
 
 template <int D>
-std::vector<double> Dynamics<D>::draw_noise(const Stage<D>& stage, std::int64_t step, double dt,
-                                            std::vector<Vec<D>>& edge_noise) {
+auto Dynamics<D>::draw_noise(const Stage<D>& stage, std::int64_t step, double dt,
+                             std::vector<Vec<D>>& edge_noise) -> Unknowns {
   const PhaseTimer timer(phases_, Phase::noise);
   edge_noise.clear();
-  if (!model_.thermal())
-    return std::vector<double>(static_cast<std::size_t>(dofs().unknowns()), 0.0);
+  if (!model_.thermal()) return Unknowns(static_cast<std::size_t>(dofs().unknowns()), 0.0);
   draw_edge_noise(stage.network, particles_, settings_.seed, static_cast<std::uint64_t>(step), dt,
                   edge_noise);
   std::vector<Vec<D>> force(stage.position.size());
   add_edge_forces<D>(stage.network, edge_noise, force);
-  std::vector<double> xi;
+  if (settings_.zeta_0 > 0.0)
+    add_drag_noise(particles_, settings_.seed, static_cast<std::uint64_t>(step),
+                   std::sqrt(2.0 * settings_.kT * settings_.zeta_0 / dt), force);
+  Unknowns xi;
   dofs().gather(force, xi);
   return xi;
 }
 
 template <int D>
-std::vector<double> Dynamics<D>::right_hand_side(Stage<D>& stage, const std::vector<double>& xi) {
+auto Dynamics<D>::force(const Stage<D>& stage) -> Unknowns {
   const PhaseTimer timer(phases_, Phase::assembly);
-  resistance_.rebuild(stage.network, dofs(), particles_, stage.position, 0.0);
   std::vector<Vec<D>> force(stage.position.size());
   for (std::size_t i = 0; i < force.size(); ++i)
     force[i] = stage.potential_force[i] + stage.driving_force[i];
-  // Free particles still have velocity zero here, so this is - R v_known.
-  if (dofs().nodes() < dofs().particles())
-    add_friction_forces<D>(stage.network, stage.velocity, force);
-  std::vector<double> b;
-  dofs().gather(force, b);
-  for (std::size_t k = 0; k < b.size(); ++k) b[k] += xi[k];
-  return b;
+  if (dofs().nodes() < dofs().particles()) {
+    std::vector<Vec<D>> known = stage.velocity;
+    for (std::size_t i = 0; i < known.size(); ++i)
+      if (particles_.is_free(i)) known[i] = Vec<D>{};
+    add_friction_forces<D>(stage.network, known, force);
+  }
+  Unknowns f;
+  dofs().gather(force, f);
+  return f;
 }
 
 template <int D>
-void Dynamics<D>::solve(Stage<D>& stage, const std::vector<double>& xi,
-                        std::vector<double>& guess) {
-  const std::vector<double> b = right_hand_side(stage, xi);
-  {
-    const PhaseTimer timer(phases_, Phase::solve);
-    solver_->bind(resistance_);
-    stage.report = solver_->solve(b, guess);
-  }
-  const SolveReport& report = stage.report;
+auto Dynamics<D>::friction(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
+  const PhaseTimer timer(phases_, Phase::assembly);
+  std::vector<Vec<D>> velocity, force(stage.position.size());
+  dofs().scatter(q, std::vector<Vec<D>>(force.size()), velocity);
+  add_friction_forces<D>(stage.network, velocity, force);
+  Unknowns f;
+  dofs().gather(force, f);
+  for (double& value : f) value = -value;
+  return f;
+}
+
+template <int D>
+auto Dynamics<D>::spring(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
+  const PhaseTimer timer(phases_, Phase::assembly);
+  std::vector<Vec<D>> velocity, force(stage.position.size());
+  dofs().scatter(q, std::vector<Vec<D>>(force.size()), velocity);
+  add_spring_forces<D>(stage.network, velocity, force);
+  Unknowns f;
+  dofs().gather(force, f);
+  for (double& value : f) value = -value;
+  return f;
+}
+
+template <int D>
+auto Dynamics<D>::total_force(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
+  Unknowns f = force(stage);
+  const Unknowns drag = friction(stage, q);
+  for (std::size_t k = 0; k < f.size(); ++k) f[k] -= drag[k] + settings_.zeta_0 * q[k];
+  return f;
+}
+
+template <int D>
+const System& Dynamics<D>::assemble(const Stage<D>& stage, const StepWeights& weights) {
+  const PhaseTimer timer(phases_, Phase::assembly);
+  resistance_.rebuild(stage.network, dofs(), particles_, stage.position,
+                      weights.inertia + settings_.zeta_0, weights.stiffness_time);
+  if (weights.stiffness_time > 0.0)
+    statistics_.clamped += std::count_if(stage.network.k_c.begin(), stage.network.k_c.end(),
+                                         [](double k) { return k < 0.0; });
+  return resistance_;
+}
+
+/// Summed over all particles, A q = load says (inertia + zeta_0) sum q = sum load where all else is pairwise.
+template <int D>
+void Dynamics<D>::balance_momentum(const Unknowns& load, double shift, Unknowns& q) const {
+  Vec<D> excess{};
+  for (std::size_t k = 0; k < q.size(); ++k) excess.x[k % D] += load[k] / shift - q[k];
+  excess *= static_cast<double>(D) / static_cast<double>(q.size());
+  for (std::size_t k = 0; k < q.size(); ++k) q[k] += excess.x[k % D];
+}
+
+template <int D>
+void Dynamics<D>::note(const SolveReport& report) {
   phases_[Phase::assembly] += report.assembly_seconds;
   phases_[Phase::solve] -= report.assembly_seconds;
   if (!report.converged)
@@ -117,12 +166,48 @@ void Dynamics<D>::solve(Stage<D>& stage, const std::vector<double>& xi,
   statistics_.most_iterations = std::max(statistics_.most_iterations, report.iterations);
   statistics_.worst_residual = std::max(statistics_.worst_residual, report.residual);
   statistics_.problem = report.problem;
-  const std::vector<Vec<D>> known = stage.velocity;
-  dofs().scatter(guess, known, stage.velocity);
+}
+
+template <int D>
+void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights& weights,
+                        Unknowns& guess) {
+  const System& system = assemble(stage, weights);
+  {
+    const PhaseTimer timer(phases_, Phase::solve);
+    solver_->bind(system);
+    stage.report = solver_->solve(load, guess);
+  }
+  note(stage.report);
+  const double shift = weights.inertia + settings_.zeta_0;
+  if (shift > 0.0 && !guess.empty() && dofs().nodes() == dofs().particles() &&
+      !system.holds_centre_of_mass())
+    balance_momentum(load, shift, guess);
+  stage.velocity = velocities(stage, guess);
   for (std::size_t i = 0; i < stage.velocity.size(); ++i)
     if (!finite(stage.velocity[i]))
       throw SolverError(fmt::format(
           "the velocity of particle {} is not finite; reduce integrator.dt", particles_.id[i]));
+}
+
+template <int D>
+auto Dynamics<D>::end_velocity() -> Unknowns {
+  if (!has_mass()) return Unknowns(static_cast<std::size_t>(dofs().unknowns()), 0.0);
+  Unknowns q;
+  dofs().gather(particles_.end_velocity, q);
+  return q;
+}
+
+template <int D>
+void Dynamics<D>::set_end_velocity(const Unknowns& q) {
+  const std::vector<Vec<D>> known = particles_.end_velocity;
+  dofs().scatter(q, known, particles_.end_velocity);
+}
+
+template <int D>
+std::vector<Vec<D>> Dynamics<D>::velocities(const Stage<D>& stage, const Unknowns& q) {
+  std::vector<Vec<D>> velocity;
+  dofs().scatter(q, stage.velocity, velocity);
+  return velocity;
 }
 
 template <int D>

@@ -4,17 +4,16 @@ namespace odpd {
 
 template <int D>
 const StepRecord<D>& Euler<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
-  record_.step = clock.step;
-  record_.dt = clock.dt;
-  dynamics.reorder_if_due(clock.step);
-  dynamics.evaluate(dynamics.particles().position, clock.time(), record_.start);
-  const std::vector<double> xi =
-      dynamics.draw_noise(record_.start, clock.step, clock.dt, record_.edge_noise);
-  std::vector<double> q(xi.size(), 0.0);
-  dynamics.solve(record_.start, xi, q);
-  record_.v_mid = record_.start.velocity;
-  record_.alarm_crossings = dynamics.move(record_.v_mid, clock.dt);
-  return record_;
+  auto& record = this->record_;
+  this->begin(dynamics, clock);
+  std::vector<double> load =
+      dynamics.draw_noise(record.start, clock.step, clock.dt, record.edge_noise);
+  const std::vector<double> force = dynamics.force(record.start);
+  for (std::size_t k = 0; k < load.size(); ++k) load[k] += force[k];
+  std::vector<double> q(load.size(), 0.0);
+  dynamics.solve(record.start, load, {}, q);
+  this->finish(dynamics, clock, q);
+  return record;
 }
 
 template class Euler<2>;

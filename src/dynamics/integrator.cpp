@@ -1,24 +1,152 @@
 #include "odpd/dynamics/integrator.h"
 
+#include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
 
 #include "odpd/core/error.h"
 #include "odpd/dynamics/euler.h"
+#include "odpd/dynamics/extrapolated.h"
+#include "odpd/dynamics/implicit.h"
+#include "odpd/dynamics/midpoint.h"
+#include "odpd/dynamics/setd.h"
+#include "odpd/dynamics/shardlow.h"
 #include "odpd/dynamics/trapezoidal.h"
+#include "odpd/dynamics/velocity_verlet.h"
 
 namespace odpd {
 
-std::vector<std::string> integrator_names() { return {"trapezoidal", "euler"}; }
+namespace {
+
+enum class Masses { any, zero, positive };
+struct Entry {
+  const char* name;
+  Masses masses;
+};
+// Every integrator there is; `make_integrator` below makes them.
+constexpr std::array<Entry, 8> table{{{"trapezoidal", Masses::any},
+                                      {"midpoint", Masses::any},
+                                      {"extrapolated", Masses::any},
+                                      {"implicit", Masses::any},
+                                      {"euler", Masses::zero},
+                                      {"setd", Masses::positive},
+                                      {"velocity-verlet", Masses::positive},
+                                      {"shardlow", Masses::positive}}};
+
+}  // namespace
 
 template <int D>
-std::unique_ptr<Integrator<D>> make_integrator(const std::string& name) {
+void Integrator<D>::begin(Dynamics<D>& dynamics, const Clock& clock) {
+  record_.step = clock.step;
+  record_.dt = clock.dt;
+  record_.alarm_crossings = 0;
+  dynamics.reorder_if_due(clock.step);
+  dynamics.evaluate(dynamics.particles().position, clock.time(), record_.start);
+  record_.v_start = dynamics.particles().end_velocity;
+}
+
+template <int D>
+void Integrator<D>::finish(Dynamics<D>& dynamics, const Clock& clock, const Unknowns& q_mid) {
+  record_.v_mid = dynamics.velocities(record_.start, q_mid);
+  record_.alarm_crossings += dynamics.move(record_.v_mid, clock.dt);
+  if (!dynamics.has_mass()) return;
+  Unknowns q = dynamics.end_velocity();
+  for (std::size_t k = 0; k < q.size(); ++k) q[k] = 2.0 * q_mid[k] - q[k];
+  dynamics.set_end_velocity(q);
+}
+
+template <int D>
+std::vector<double> by_identity(Dynamics<D>& dynamics, const std::vector<double>& q) {
+  const DofMap<D>& dofs = dynamics.dofs();
+  std::vector<double> values(static_cast<std::size_t>(dofs.particles()) * D, 0.0);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(dofs.nodes()); ++n) {
+    const auto i = static_cast<std::size_t>(dofs.particle_of(n));
+    const auto id = static_cast<std::size_t>(dynamics.particles().id[i]);
+    for (std::size_t c = 0; c < D; ++c) values[id * D + c] = q[n * D + c];
+  }
+  return values;
+}
+
+template <int D>
+std::vector<double> from_identity(Dynamics<D>& dynamics, const std::vector<double>& values) {
+  const DofMap<D>& dofs = dynamics.dofs();
+  if (values.size() != static_cast<std::size_t>(dofs.particles()) * D)
+    throw IoError(
+        "the checkpoint's integrator arrays do not fit the particles: it is damaged or of another "
+        "case");
+  std::vector<double> q(static_cast<std::size_t>(dofs.unknowns()));
+  for (std::size_t n = 0; n < static_cast<std::size_t>(dofs.nodes()); ++n) {
+    const auto i = static_cast<std::size_t>(dofs.particle_of(n));
+    const auto id = static_cast<std::size_t>(dynamics.particles().id[i]);
+    for (std::size_t c = 0; c < D; ++c) q[n * D + c] = values[id * D + c];
+  }
+  return q;
+}
+
+std::vector<std::string> integrator_names() {
+  std::vector<std::string> names;
+  for (const Entry& entry : table) names.emplace_back(entry.name);
+  return names;
+}
+
+IntegratorSettings read_integrator(const Config& config) {
+  IntegratorSettings settings;
+  settings.name = config.choice("name", integrator_names(), settings.name);
+  if (settings.name == "velocity-verlet") {
+    settings.lambda = config.non_negative("lambda", settings.lambda);
+    if (settings.lambda > 1.0) config.fail("lambda", "must be between 0 and 1");
+  }
+  if (settings.name == "implicit") {
+    settings.theta = config.positive("theta", settings.theta);
+    if (settings.theta > 1.0) config.fail("theta", "must be above 0 and at most 1");
+  }
+  if (settings.name == "setd") {
+    const std::int64_t order = config.positive_integer("order", settings.order);
+    if (order > 2) config.fail("order", "must be 1 or 2");
+    settings.order = static_cast<int>(order);
+  }
+  return settings;
+}
+
+std::string mass_objection(const std::string& name, double mass) {
+  const auto entry =
+      std::find_if(table.begin(), table.end(), [&](const Entry& e) { return name == e.name; });
+  if (entry == table.end()) return {};
+  if (entry->masses == Masses::zero && mass > 0.0)
+    return fmt::format(
+        "'{}' is a scheme for mass 0 only, but fluid.mass = {}: use trapezoidal, or set fluid.mass "
+        "= 0.0",
+        name, mass);
+  if (entry->masses == Masses::positive && mass == 0.0)
+    return fmt::format(
+        "'{}' needs fluid.mass above 0: at mass 0 use trapezoidal, midpoint or extrapolated", name);
+  return {};
+}
+
+template <int D>
+std::unique_ptr<Integrator<D>> make_integrator(const IntegratorSettings& settings) {
+  const std::string& name = settings.name;
   if (name == "trapezoidal") return std::make_unique<Trapezoidal<D>>();
+  if (name == "midpoint") return std::make_unique<Midpoint<D>>();
+  if (name == "extrapolated") return std::make_unique<Extrapolated<D>>();
+  if (name == "implicit") return std::make_unique<Implicit<D>>(settings.theta);
   if (name == "euler") return std::make_unique<Euler<D>>();
+  if (name == "setd") return std::make_unique<Setd<D>>(settings.order);
+  if (name == "velocity-verlet") return std::make_unique<VelocityVerlet<D>>(settings.lambda);
+  if (name == "shardlow") return std::make_unique<Shardlow<D>>();
   throw ConfigError(fmt::format("there is no integrator '{}': use one of {}", name,
                                 fmt::join(integrator_names(), ", ")));
 }
 
-template std::unique_ptr<Integrator<2>> make_integrator<2>(const std::string&);
-template std::unique_ptr<Integrator<3>> make_integrator<3>(const std::string&);
+#define ODPD_INSTANTIATE(D)                                                                \
+  template class Integrator<D>;                                                            \
+  template std::vector<double> by_identity<D>(Dynamics<D>&, const std::vector<double>&);   \
+  template std::vector<double> from_identity<D>(Dynamics<D>&, const std::vector<double>&); \
+  template std::unique_ptr<Integrator<D>> make_integrator<D>(const IntegratorSettings& settings);
+ODPD_INSTANTIATE(2)
+ODPD_INSTANTIATE(3)
+#undef ODPD_INSTANTIATE
 
 }  // namespace odpd

@@ -4,28 +4,31 @@ namespace odpd {
 
 template <int D>
 const StepRecord<D>& Trapezoidal<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
-  record_.step = clock.step;
-  record_.dt = clock.dt;
-  record_.has_corrector = true;
-  record_.alarm_crossings = 0;
-  dynamics.reorder_if_due(clock.step);
-  dynamics.evaluate(dynamics.particles().position, clock.time(), record_.start);
-  const std::vector<double> xi =
-      dynamics.draw_noise(record_.start, clock.step, clock.dt, record_.edge_noise);
-  std::vector<double> q(xi.size(), 0.0);
-  dynamics.solve(record_.start, xi, q);
+  auto& record = this->record_;
+  this->begin(dynamics, clock);
+  record.start_weight = 0.5;
+  const StepWeights weights{dynamics.inertia(clock.dt), 0.0};
+  std::vector<double> q = dynamics.end_velocity();
+  std::vector<double> impulse =
+      dynamics.draw_noise(record.start, clock.step, clock.dt, record.edge_noise);
+  for (std::size_t k = 0; k < q.size(); ++k) impulse[k] += weights.inertia * q[k];
+
+  std::vector<double> load = dynamics.force(record.start);
+  for (std::size_t k = 0; k < load.size(); ++k) load[k] += impulse[k];
+  dynamics.solve(record.start, load, weights, q);
+  std::vector<double> q_mid = q;
 
   const std::vector<Vec<D>> predicted =
-      dynamics.displaced(record_.start.velocity, clock.dt, record_.alarm_crossings);
-  dynamics.evaluate(predicted, clock.time() + clock.dt, record_.corrector);
-  // The first answer is the guess of the second solve; the noise is the stored vector, never drawn again.
-  dynamics.solve(record_.corrector, xi, q);
+      dynamics.displaced(record.start.velocity, clock.dt, record.alarm_crossings);
+  dynamics.evaluate(predicted, clock.time() + clock.dt, record.corrector);
+  load = dynamics.force(record.corrector);
+  // The noise is the stored vector, never drawn again or projected with the edges of r*.
+  for (std::size_t k = 0; k < load.size(); ++k) load[k] += impulse[k];
+  dynamics.solve(record.corrector, load, weights, q);
 
-  record_.v_mid.resize(record_.start.velocity.size());
-  for (std::size_t i = 0; i < record_.v_mid.size(); ++i)
-    record_.v_mid[i] = 0.5 * (record_.start.velocity[i] + record_.corrector.velocity[i]);
-  record_.alarm_crossings += dynamics.move(record_.v_mid, clock.dt);
-  return record_;
+  for (std::size_t k = 0; k < q.size(); ++k) q_mid[k] = 0.5 * (q_mid[k] + q[k]);
+  this->finish(dynamics, clock, q_mid);
+  return record;
 }
 
 template class Trapezoidal<2>;

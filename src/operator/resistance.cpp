@@ -51,9 +51,10 @@ std::size_t other_end(const PairNetwork<D>& network, std::int32_t edge, std::int
 template <int D>
 void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs,
                             const Particles<D>& particles, std::span<const Vec<D>> positions,
-                            double shift) {
+                            double shift, double stiffness_time) {
   nodes_ = dofs.nodes();
   shift_ = shift;
+  stiffness_time_ = stiffness_time;
   ++generation_;
   const auto n_nodes = static_cast<std::size_t>(nodes_);
   start_.assign(n_nodes + 1, 0);
@@ -93,7 +94,8 @@ void Resistance<D>::fill_row(std::size_t node, std::int32_t particle, const Pair
   auto slot = static_cast<std::size_t>(start_[node]);
   for (const std::int32_t edge : network.edges_of(particle)) {
     const auto k = static_cast<std::size_t>(edge);
-    const double along = network.zeta_par[k] - network.zeta_perp[k];
+    const double along = network.zeta_par[k] + stiffness_time_ * std::max(network.k_c[k], 0.0) -
+                         network.zeta_perp[k];
     const std::int32_t partner = dofs.node_of(other_end(network, edge, particle));
     if (partner >= 0) {
       links_[slot] = {std::sqrt(std::abs(along)) * network.e[k], partner};

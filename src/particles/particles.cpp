@@ -15,6 +15,14 @@ Particles<D>::Particles() {
 }
 
 template <int D>
+void Particles<D>::carry_inertia() {
+  if (inertial_) return;
+  inertial_ = true;
+  end_velocity.assign(position.size(), Vec<D>{});
+  fields_.add("end_velocity", &end_velocity);
+}
+
+template <int D>
 std::int64_t Particles<D>::free_count() const {
   return std::count(group.begin(), group.end(), 0);
 }

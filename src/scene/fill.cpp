@@ -197,6 +197,26 @@ void relax(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& 
   }
 }
 
+template <int D>
+void draw_velocities(std::uint64_t seed, double kT, double mass, bool conserved,
+                     Particles<D>& particles) {
+  if (mass == 0.0) return;
+  particles.carry_inertia();
+  const CounterRandom random(seed, Stream::start_velocities);
+  Vec<D> mean{};
+  for (std::size_t i = 0; i < particles.position.size(); ++i) {
+    if (!particles.is_free(i)) continue;
+    const auto w = random.normals(0, 0, static_cast<std::uint64_t>(particles.id[i]), 0);
+    for (std::size_t c = 0; c < D; ++c)
+      particles.end_velocity[i].x[c] = std::sqrt(kT / mass) * w[c];
+    mean += (1.0 / static_cast<double>(particles.free_count())) * particles.end_velocity[i];
+  }
+  for (std::size_t i = 0; i < particles.position.size() && conserved; ++i)
+    if (particles.is_free(i)) particles.end_velocity[i] -= mean;
+}
+
+template void draw_velocities<2>(std::uint64_t, double, double, bool, Particles<2>&);
+template void draw_velocities<3>(std::uint64_t, double, double, bool, Particles<3>&);
 template void place_walls<2>(const SceneSettings<2>&, Particles<2>&);
 template void place_walls<3>(const SceneSettings<3>&, Particles<3>&);
 template void place_fluid<2>(const SceneSettings<2>&, const Vec<2>&, const Vec<2>&, Particles<2>&);

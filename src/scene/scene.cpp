@@ -14,6 +14,7 @@ Scene<D>::Scene(SceneSettings<D> settings)
   place_walls(settings_, particles_);
   place_fluid(settings_, fluid_low(), fluid_high(), particles_);
   relax(settings_.box, *model_, *this, settings_.relax_sweeps, particles_);
+  draw_velocities(settings_.seed, largest_kT(), settings_.mass, conserves_momentum(), particles_);
 }
 
 template <int D>

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace odpd {
@@ -97,12 +98,7 @@ template <int D>
 void read_fluid(const Config& config, SceneSettings<D>& scene) {
   const Config fluid = config.table("fluid");
   fluid.choice("model", {"dpd"}, "dpd");
-  const double mass = fluid.non_negative("mass", 0.0);
-  if (mass != 0.0)
-    fluid.fail("mass",
-               "this version solves the massless case only (its integrators are trapezoidal and "
-               "euler): set "
-               "mass = 0.0");
+  scene.mass = fluid.non_negative("mass", 0.0);
   if (fluid.has("density") && fluid.has("count"))
     fluid.fail("count", "give density or count, never both");
   if (scene.start == StartKind::file && (fluid.has("density") || fluid.has("count")))
@@ -139,6 +135,20 @@ void read_fluid(const Config& config, SceneSettings<D>& scene) {
     scene.pairs[a * n + b] = p;
     scene.pairs[b * n + a] = p;
   }
+}
+
+// A drag relative to the frame at rest screens flow beyond sqrt(eta/(n zeta_0)) and takes momentum away.
+template <int D>
+void read_drag(const Config& fluid, SceneSettings<D>& scene) {
+  scene.zeta_0 = fluid.non_negative("zeta_0", 0.0);
+  if (scene.zeta_0 == 0.0) return;
+  const bool forced = fluid.boolean("zeta_0_under_flow", false);
+  if (scene.driven() && !forced)
+    fluid.fail("zeta_0",
+               "a uniform drag breaks momentum conservation and screens flow beyond "
+               "sqrt(eta/(n zeta_0)), so it is refused where a wall moves or a body force drives: "
+               "use fluid.rattler_friction against rattlers, or insist with "
+               "fluid.zeta_0_under_flow = true");
 }
 
 template <int D>
@@ -245,6 +255,12 @@ std::int32_t species_index(const std::vector<SpeciesSettings>& species, const Co
 }
 
 template <int D>
+bool SceneSettings<D>::driven() const {
+  const auto moves = [](const WallSettings<D>& w) { return dot(w.velocity, w.velocity) > 0.0; };
+  return dot(body_force, body_force) > 0.0 || std::any_of(walls.begin(), walls.end(), moves);
+}
+
+template <int D>
 int SceneSettings<D>::wall_at(int axis, bool high) const {
   for (std::size_t w = 0; w < walls.size(); ++w)
     if (walls[w].axis == axis && walls[w].high == high) return static_cast<int>(w);
@@ -264,12 +280,12 @@ SceneSettings<D> read_scene_settings(const Config& config) {
   read_walls(config, scene);
   const Config body_force = config.table("body_force");
   scene.body_force = read_optional_vector<D>(body_force, "force");
-  const bool driven = dot(scene.body_force, scene.body_force) > 0.0;
-  if (driven && scene.walls.empty())
+  if (scene.walls.empty() && dot(scene.body_force, scene.body_force) > 0.0)
     body_force.fail(
         "force",
-        "in a fully periodic box nothing balances a net force, so a massless fluid has no answer: "
-        "add walls, or remove the force");
+        "in a fully periodic box nothing balances a net force, so a massless fluid has no answer "
+        "and one with mass accelerates for ever: add walls, or remove the force");
+  read_drag(config.table("fluid"), scene);
   return scene;
 }
 

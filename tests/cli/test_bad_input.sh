@@ -67,7 +67,11 @@ expect_error 1 run twice -- 'twice/case.toml:'
 bad both
 replace both 'gamma = 4.5' 'gamma = 4.5\nsigma = 3.0'
 expect_error 1 run both -- "both/case.toml:$(line_of both sigma)" fluid.sigma gamma
-expect_error 1 run box --set fluid.mass=1.0 -- '--set fluid.mass' massless
+expect_error 1 run box --set fluid.mass=1.0 --set integrator.name=euler -- '--set integrator.name' 'mass 0 only' trapezoidal
+expect_error 1 run box --set integrator.name=shardlow -- '--set integrator.name' fluid.mass trapezoidal
+expect_error 1 run box --set integrator.name=velocity-verlet --set integrator.lambda=2 --set fluid.mass=1 -- integrator.lambda
+expect_error 1 run box --set integrator.lambda=0.5 -- integrator.lambda
+expect_error 1 run channel --set fluid.zeta_0=0.1 --set 'wall.0.velocity=[1.0, 0.0]' -- fluid.zeta_0 zeta_0_under_flow rattler_friction
 expect_error 1 run box --set dimension=4 -- '--set dimension' '2 or 3'
 expect_error 1 run box --set seed=-3 -- '--set seed'
 expect_error 1 run box --set run.duration=0.001 -- '--set run.duration' integrator.dt

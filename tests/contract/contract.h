@@ -70,7 +70,9 @@ class Instant {
     dynamics.evaluate(scene.particles().position, 0.0, stage);
     std::vector<odpd::Vec<D>> edge_noise;
     const auto xi = dynamics.draw_noise(stage, 3, 0.01, edge_noise);
-    load = dynamics.right_hand_side(stage, xi);
+    dynamics.assemble(stage, {});
+    load = dynamics.force(stage);
+    for (std::size_t k = 0; k < load.size(); ++k) load[k] += xi[k];
   }
 
   odpd::Scene<D> scene;

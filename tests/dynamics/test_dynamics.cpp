@@ -184,7 +184,7 @@ TEST(Dynamics, UnknownIntegratorListsTheNames) {
     make_integrator<2>("leapfrog");
     FAIL();
   } catch (const ConfigError& e) {
-    EXPECT_NE(std::string(e.what()).find("trapezoidal, euler"), std::string::npos);
+    EXPECT_NE(std::string(e.what()).find("trapezoidal, midpoint"), std::string::npos);
   }
 }
 

@@ -90,7 +90,7 @@ TEST(SceneSettings, RefusesBadFluids) {
   refuse(channel, {"fluid.density=-4.0"}, {"fluid.density"});
   refuse(channel, {"fluid.density=0.0"}, {"fluid.density"});
   refuse(channel, {"fluid.count=100"}, {"fluid.count", "density or count"});
-  refuse(channel, {"fluid.mass=1.0"}, {"fluid.mass", "massless", "mass = 0.0"});
+  refuse(channel, {"fluid.mass=-1.0"}, {"fluid.mass", "negative"});
   refuse(channel, {"fluid.gamma=0.0"}, {"fluid.gamma"});
   refuse(channel, {"fluid.kT=-1.0"}, {"fluid.kT"});
   refuse(channel, {"fluid.a=-1.0"}, {"fluid.a"});

@@ -6,6 +6,9 @@
 //                            equilibrium, physics of m = 0)
 //   configurational          <sum_i |F_i|^2> / <sum_i lap_i U> over free particles, F the conservative force (wall
 //   temperature              potentials included); kT at equilibrium (Rugh 1997); not a thermometer under flow
+//   kinetic temperature      with mass only: m sum |v - V|^2 / (d (N - c)) with v at the step's start, of variance kT/m;
+//                            V the mean velocity and c = 1 where momentum is conserved, else 0; under flow the flow's
+//                            own kinetic energy is in it
 //
 // N: free particles; V: the volume between wall surfaces; edges to wall particles count half in the virial.
 #include "odpd/analysis/block_average.h"
@@ -27,9 +30,14 @@ class Thermo : public Observer<D> {
 
  private:
   const Scene<D>& scene_;
-  BlockAverage average_;  // energy, pressure, |F|^2, laplacian
+  BlockAverage average_;  // energy, pressure, |F|^2, laplacian, kinetic temperature
   std::vector<double> newest_;
 };
+
+/// Kinetic temperature of these velocities, one per particle (0 without mass).
+template <int D>
+double kinetic_temperature(const Scene<D>& scene, const Particles<D>& particles,
+                           const std::vector<Vec<D>>& velocity);
 
 /// Conservative |F|^2 and Laplacian of U per particle at a stage, zero for particles of known velocity.
 template <int D>

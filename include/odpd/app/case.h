@@ -9,6 +9,7 @@
 #include "odpd/core/config.h"
 #include "odpd/dynamics/clock.h"
 #include "odpd/dynamics/dynamics.h"
+#include "odpd/dynamics/integrator.h"
 #include "odpd/scene/scene_settings.h"
 #include "odpd/solvers/solver.h"
 
@@ -36,7 +37,7 @@ struct CaseSettings {
   std::string name;  ///< of the case directory or file
   std::string title;
   int dimension = 2;
-  std::string integrator;
+  IntegratorSettings integrator;
   Clock clock;
   SolverOptions solver;
   DynamicsSettings dynamics;

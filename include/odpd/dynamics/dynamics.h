@@ -1,9 +1,10 @@
 #pragma once
-// The massless balance of forces at one configuration,
+// The balance of forces at one configuration, for particles of mass m >= 0,
 //
-//   P^T R P q = P^T (F_C + F_ext - R v_known) + xi,   xi = P^T F_B,      v = P q + v_known
+//   P^T (R + zeta_0) P q + M (q - q_before) = P^T (F_C + F_ext - R v_known) + xi,   xi = P^T F_B,   v = P q + v_known
 //
-// (Phan-Thien et al. 2016, eq. 14-18), in the pieces that integrators put together.
+// (Phan-Thien et al. 2016, eq. 14-18, with M = 2 m/dt), in the pieces that integrators put together. Vectors of
+// unknowns are flat, D numbers per free particle in memory order.
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -24,6 +25,15 @@ struct DynamicsSettings {
   double skin = 0.4;                 ///< of the pair list (length)
   bool hold_centre_of_mass = false;  ///< solve the problem of Scheme 2
   std::int64_t reorder_every = 100;  ///< steps between spatial reorderings of memory; 0: never
+  double mass = 0.0;                 ///< of every free particle
+  double zeta_0 = 0.0;  ///< uniform drag on every free particle, with its noise (mass/time)
+  double kT = 1.0;      ///< of that noise, and of the scene (energy)
+};
+
+/// What a time step adds to the friction of a solve.
+struct StepWeights {
+  double inertia = 0.0;         ///< on the diagonal, M = 2 m/dt (mass/time)
+  double stiffness_time = 0.0;  ///< theta dt, weight of max(k_c, 0) along each edge (time)
 };
 
 /// Sums over all solves of a run.
@@ -32,19 +42,26 @@ struct SolverStatistics {
   std::int64_t iterations = 0;
   std::int64_t most_iterations = 0;
   double worst_residual = 0.0;
-  std::string problem;  ///< which problem was solved, in words
+  std::int64_t clamped = 0;  ///< negative stiffnesses that an implicit step left out
+  std::string problem;       ///< which problem was solved, in words
 };
 
 template <int D>
 class Dynamics {
  public:
-  /// References must outlive this object. Throws ConfigError when the box is too small for the cutoff.
+  using Unknowns = std::vector<double>;
+
+  /// References must outlive this object. Gives the particles an `end_velocity` where they have mass. Throws ConfigError
+  /// when the box is too small for the cutoff.
   Dynamics(const Box<D>& box, Particles<D>& particles, const PairModel<D>& model,
            const Surroundings<D>& surroundings, std::unique_ptr<Solver> solver,
            const DynamicsSettings& settings);
 
   Particles<D>& particles() { return particles_; }
   const Box<D>& box() const { return box_; }
+  const PairModel<D>& model() const { return model_; }
+  const Surroundings<D>& surroundings() const { return surroundings_; }
+  const DynamicsSettings& settings() const { return settings_; }
 
   /// The particles were replaced (a checkpoint was read): forget what was derived from them.
   void particles_replaced() {
@@ -56,14 +73,35 @@ class Dynamics {
   /// Fills position, edges and forces of a stage at the given positions and time. Throws SolverError for a position
   /// that is not finite.
   void evaluate(std::span<const Vec<D>> positions, double time, Stage<D>& stage);
-  /// Draws F_B of the stage's edges and returns xi = P^T F_B as unknowns (zero, and nothing drawn, at kT = 0).
-  std::vector<double> draw_noise(const Stage<D>& stage, std::int64_t step, double dt,
-                                 std::vector<Vec<D>>& edge_noise);
-  /// Assembles the stage's system and right-hand side for the given xi, with known velocities of the stage's time.
-  std::vector<double> right_hand_side(Stage<D>& stage, const std::vector<double>& xi);
-  /// Solves for the stage's velocities. `guess` in, answer out (unknowns). Throws SolverError when the solver did
-  /// not converge or a velocity is not finite.
-  void solve(Stage<D>& stage, const std::vector<double>& xi, std::vector<double>& guess);
+  /// Draws F_B of the stage's edges and returns xi = P^T F_B, with the noise of the drag (zero, and nothing drawn, at
+  /// kT = 0).
+  Unknowns draw_noise(const Stage<D>& stage, std::int64_t step, double dt,
+                      std::vector<Vec<D>>& edge_noise);
+  /// P^T (F_C + F_ext - R v_known) at the stage.
+  Unknowns force(const Stage<D>& stage);
+  /// P^T R P q at the stage: friction among the particles, without the drag.
+  Unknowns friction(const Stage<D>& stage, const Unknowns& q);
+  /// P^T K P q, K the stiffness of the conservative force along the lines of centres (negative parts left out).
+  Unknowns spring(const Stage<D>& stage, const Unknowns& q);
+  /// F - (R + zeta_0) q: all forces at the velocities q but the random ones.
+  Unknowns total_force(const Stage<D>& stage, const Unknowns& q);
+
+  /// Assembles A = P^T (R + K stiffness_time) P + zeta_0 + inertia at the stage.
+  const System& assemble(const Stage<D>& stage, const StepWeights& weights);
+  /// Solves A q = load for the stage's velocities. `guess` in, answer out. With mass or drag and nothing of known
+  /// velocity, the mean of the answer is set to what momentum balance says, to rounding. Throws SolverError when the
+  /// solver did not converge or a velocity is not finite.
+  void solve(Stage<D>& stage, const Unknowns& load, const StepWeights& weights, Unknowns& guess);
+
+  /// M = 2 m/dt.
+  double inertia(double dt) const { return 2.0 * settings_.mass / dt; }
+  bool has_mass() const { return settings_.mass > 0.0; }
+  /// P^T of the particles' end velocities (zeros without mass).
+  Unknowns end_velocity();
+  void set_end_velocity(const Unknowns& q);
+  /// P q + the stage's known velocities.
+  std::vector<Vec<D>> velocities(const Stage<D>& stage, const Unknowns& q);
+
   /// position + dt velocity, wrapped; a particle that moves further than half the box throws, as in `move`.
   /// Adds the mirror's catches to `crossings`.
   std::vector<Vec<D>> displaced(const std::vector<Vec<D>>& velocity, double dt,
@@ -83,6 +121,8 @@ class Dynamics {
 
  private:
   void check_paths(const std::vector<Vec<D>>& velocity, double dt) const;
+  void balance_momentum(const Unknowns& load, double shift, Unknowns& q) const;
+  void note(const SolveReport& report);
 
   const Box<D> box_;
   Particles<D>& particles_;

@@ -1,13 +1,21 @@
 #pragma once
-// Integrators advance the particles by one step and report what they did. Made by name.
+// Integrators advance the particles by one step and report what they did. Made by name; each header states the scheme,
+// how it obtains the drift kT div R^-1, its order without noise, and where it breaks.
 //
-//   trapezoidal  stochastic trapezoidal rule, two solves per step, right drift (the default)
-//   euler        one solve per step as in the overdamped paper, biased: kept to reproduce it
+//   trapezoidal      m >= 0, two solves: stochastic trapezoidal rule, right drift (the default)
+//   midpoint         m >= 0, two solves: Fixman's half step and full step, right drift
+//   extrapolated     m >= 0, one solve: right drift from the step before
+//   implicit         m >= 0, one solve: the same with the stiffness of the repulsion taken implicitly
+//   euler            m = 0, one solve: the overdamped paper's step, biased
+//   setd             m > 0, no solve: stochastic exponential time differencing
+//   velocity-verlet  m > 0, no solve: Groot and Warren's modified velocity-Verlet
+//   shardlow         m > 0, no solve: exact pairwise splitting
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "odpd/core/archive.h"
+#include "odpd/core/config.h"
 #include "odpd/dynamics/clock.h"
 #include "odpd/dynamics/dynamics.h"
 #include "odpd/dynamics/step_record.h"
@@ -20,19 +28,54 @@ class Integrator {
   virtual ~Integrator() = default;
   virtual std::string name() const = 0;
   /// Solves per step.
-  virtual int stages() const = 0;
+  virtual int solves() const = 0;
   /// What a user must know before believing its results; empty when there is nothing.
   virtual std::string warning() const { return {}; }
   /// One step of clock.dt from clock.step. The record stays valid until the next step.
   virtual const StepRecord<D>& step(Dynamics<D>& dynamics, const Clock& clock) = 0;
-  /// Arrays carried from step to step (none for schemes that only know r).
+  /// Arrays carried from step to step (none for schemes that only know r and v).
   virtual void save(StateWriter&) const {}
   virtual void load(const StateReader&) {}
+
+ protected:
+  using Unknowns = typename Dynamics<D>::Unknowns;
+
+  /// What every step begins with: memory in order, edges and forces at r, the velocity there.
+  void begin(Dynamics<D>& dynamics, const Clock& clock);
+  /// What steps with implicit friction end with: r' = r + dt P q_mid, and with mass v' = 2 q_mid - v.
+  void finish(Dynamics<D>& dynamics, const Clock& clock, const Unknowns& q_mid);
+
+  StepRecord<D> record_;
+};
+
+/// Unknowns in the order of the persistent identities, D numbers per particle (zero where the velocity is known), and
+/// back: carried arrays so survive a reordering of memory.
+template <int D>
+std::vector<double> by_identity(Dynamics<D>& dynamics, const std::vector<double>& q);
+template <int D>
+std::vector<double> from_identity(Dynamics<D>& dynamics, const std::vector<double>& values);
+
+/// [integrator] of a case file; keys that a scheme does not use are not read.
+struct IntegratorSettings {
+  std::string name = "trapezoidal";
+  double lambda = 0.5;  ///< velocity-verlet: the velocity is predicted lambda dt ahead
+  double theta = 0.5;   ///< implicit: weight of the end of the step
+  int order = 1;        ///< setd: 1 or 2
 };
 
 std::vector<std::string> integrator_names();
+/// Reads the table [integrator] but its dt. Throws ConfigError.
+IntegratorSettings read_integrator(const Config& config);
+/// Why this integrator cannot run particles of this mass, with the remedy; empty when it can.
+std::string mass_objection(const std::string& name, double mass);
 /// Throws ConfigError for an unknown name, listing the names.
 template <int D>
-std::unique_ptr<Integrator<D>> make_integrator(const std::string& name);
+std::unique_ptr<Integrator<D>> make_integrator(const IntegratorSettings& settings);
+template <int D>
+std::unique_ptr<Integrator<D>> make_integrator(const std::string& name) {
+  IntegratorSettings settings;
+  settings.name = name;
+  return make_integrator<D>(settings);
+}
 
 }  // namespace odpd

@@ -24,12 +24,16 @@ template <int D>
 struct StepRecord {
   std::int64_t step = 0;  ///< index of the step, counted from 0
   double dt = 0.0;
-  Stage<D> start;                    ///< at the step's start: r, v1
-  bool has_corrector = false;        ///< schemes with one solve have no second stage
-  Stage<D> corrector;                ///< at r* = r + dt v1: v2
+  std::vector<Vec<D>> v_start;  ///< velocity at the step's start, of variance kT/m; empty at m = 0
+  Stage<D> start;               ///< at the step's start: r, v1
+  double start_weight =
+      1.0;             ///< of this stage in means over the stages; the second one has the rest
+  Stage<D> corrector;  ///< the second stage, where a scheme has one: r*, v2
   std::vector<Vec<D>> edge_noise;    ///< F_B on i per edge of start.network; empty at kT = 0
-  std::vector<Vec<D>> v_mid;         ///< velocity that moved each particle: the mean of the stages
+  std::vector<Vec<D>> v_mid;         ///< velocity that moved each particle: displacement/dt
   std::int64_t alarm_crossings = 0;  ///< particles the mirror had to catch in this step
+
+  bool has_corrector() const { return start_weight < 1.0; }
 };
 
 }  // namespace odpd

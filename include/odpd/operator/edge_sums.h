@@ -1,6 +1,7 @@
 #pragma once
 // Forces on particles from their edges. Each particle adds up its own edges in fixed order: the same bits on any
 // thread count.
+#include <array>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,17 @@ void add_conservative_forces(const PairNetwork<D>& network, std::vector<Vec<D>>&
 template <int D>
 void add_friction_forces(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
                          std::vector<Vec<D>>& force);
+
+/// force[p] -= (K v)_p with K = sum over edges of max(k_c, 0) e e^T, the linearised conservative force along the line of
+/// centres.
+template <int D>
+void add_spring_forces(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
+                       std::vector<Vec<D>>& force);
+
+/// blocks[p] += sum over edges of p of Z = zeta_par e e^T + zeta_perp (I - e e^T), row-major.
+template <int D>
+void add_friction_blocks(const PairNetwork<D>& network,
+                         std::vector<std::array<double, static_cast<std::size_t>(D* D)>>& blocks);
 
 /// laplacian[p] += sum over edges of k_c - (D - 1) f_c / r: the pair part of the Laplacian of U in r_p.
 template <int D>

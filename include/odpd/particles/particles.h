@@ -23,6 +23,8 @@ class Particles {
   std::vector<Vec<D>> position;  ///< inside the box along periodic directions; length
   std::vector<Image> image;      ///< box crossings: unwrapped = position + image * size
   std::vector<Vec<D>> velocity;  ///< v_mid of the last step (prescribed for walls); length/time
+  /// v' at the end of the last step, whose variance is kT/m; empty unless carry_inertia was called; length/time
+  std::vector<Vec<D>> end_velocity;
   std::vector<std::int64_t>
       id;  ///< persistent identity, 0, 1, ...; survives reordering and restart
   std::vector<std::int32_t> species;  ///< index into the scene's species
@@ -32,6 +34,8 @@ class Particles {
   bool is_free(std::size_t i) const { return group[i] == 0; }
   std::int64_t free_count() const;
 
+  /// From now on `end_velocity` has an entry per particle, at first zero, and is state like the other fields.
+  void carry_inertia();
   /// Appends one particle with the next identity, at rest.
   void add(const Vec<D>& r, std::int32_t species_index, std::int32_t group_index);
   void reorder(const std::vector<std::int32_t>& order) { fields_.reorder(order); }
@@ -43,6 +47,7 @@ class Particles {
 
  private:
   FieldTable<D> fields_;
+  bool inertial_ = false;
 };
 
 }  // namespace odpd

@@ -18,6 +18,12 @@ template <int D>
 void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<D>& high,
                  Particles<D>& particles);
 
+/// Gives the free particles Maxwell velocities of variance kT/mass per component; where nothing takes momentum away
+/// (`conserved`) their mean is zero. With mass 0 nothing.
+template <int D>
+void draw_velocities(std::uint64_t seed, double kT, double mass, bool conserved,
+                     Particles<D>& particles);
+
 /// `sweeps` times: every free particle moves along its force F by |F| / (sum of its stiffnesses), at most r_c/20.
 template <int D>
 void relax(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& surroundings,

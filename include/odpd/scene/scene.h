@@ -28,6 +28,8 @@ class Scene : public Surroundings<D> {
   Vec<D> fluid_high() const;
   double fluid_volume() const;
   double largest_kT() const;
+  /// Nothing takes momentum from the particles: no walls and no uniform drag.
+  bool conserves_momentum() const { return settings_.walls.empty() && settings_.zeta_0 == 0.0; }
 
   void add_potential_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
                             std::vector<Vec<D>>& force) const override;

@@ -46,6 +46,8 @@ struct SceneSettings {
   std::vector<DpdParameters> pairs{DpdParameters{}};  ///< [A * species.size() + B]
   std::int64_t count = 0;                             ///< fluid particles; 0: by density
   double density = 4.0;  ///< fluid particles per volume between the walls
+  double mass = 0.0;     ///< of every fluid particle
+  double zeta_0 = 0.0;   ///< uniform drag on every fluid particle (mass/time)
   std::vector<WallSettings<D>> walls;
   Vec<D> body_force{};  ///< on every free particle (force)
   StartKind start = StartKind::random;
@@ -54,6 +56,8 @@ struct SceneSettings {
   std::vector<std::int32_t> start_species;  ///< one per start position
   std::int64_t relax_sweeps = 100;          ///< of overlap removal before the run
 
+  /// Something drives a flow: a body force or a moving wall.
+  bool driven() const;
   int wall_at(int axis, bool high) const;  ///< index into walls, -1 when there is none
 };
 

@@ -1,0 +1,54 @@
+#include "odpd/dynamics/extrapolated.h"
+
+namespace odpd {
+
+template <int D>
+const StepRecord<D>& Extrapolated<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
+  auto& record = this->record_;
+  this->begin(dynamics, clock);
+  const double inertia = dynamics.inertia(clock.dt);
+  const double stiffness_time = theta_ * clock.dt;
+  std::vector<double> q = dynamics.end_velocity();
+  const std::vector<double> force = dynamics.force(record.start);
+  std::vector<double> load =
+      dynamics.draw_noise(record.start, clock.step, clock.dt, record.edge_noise);
+  for (std::size_t k = 0; k < q.size(); ++k) load[k] += inertia * q[k] + force[k];
+
+  if (!last_velocity_.empty()) {
+    const std::vector<double> last = from_identity(dynamics, last_velocity_);
+    const std::vector<double> last_force = from_identity(dynamics, last_force_);
+    const std::vector<double> drag = dynamics.friction(record.start, last);
+    for (std::size_t k = 0; k < q.size(); ++k)
+      load[k] += 0.5 * (force[k] - drag[k] - last_force[k]);
+    if (theta_ > 0.0) {
+      const std::vector<double> spring = dynamics.spring(record.start, last);
+      for (std::size_t k = 0; k < q.size(); ++k) load[k] += stiffness_time * spring[k];
+    }
+  }
+  dynamics.solve(record.start, load, {inertia, stiffness_time}, q);
+
+  const std::vector<double> drag = dynamics.friction(record.start, q);
+  last_velocity_ = by_identity(dynamics, q);
+  std::vector<double> rest = force;
+  for (std::size_t k = 0; k < q.size(); ++k) rest[k] -= drag[k];
+  last_force_ = by_identity(dynamics, rest);
+  this->finish(dynamics, clock, q);
+  return record;
+}
+
+template <int D>
+void Extrapolated<D>::save(StateWriter& out) const {
+  out.write("last_velocity", last_velocity_);
+  out.write("last_force", last_force_);
+}
+
+template <int D>
+void Extrapolated<D>::load(const StateReader& in) {
+  last_velocity_ = in.read_doubles("last_velocity");
+  last_force_ = in.read_doubles("last_force");
+}
+
+template class Extrapolated<2>;
+template class Extrapolated<3>;
+
+}  // namespace odpd
