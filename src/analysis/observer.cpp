@@ -101,8 +101,18 @@ std::unique_ptr<Observer<D>> make_rdf(const Config& entry, ObserverSettings sett
       entry.fail("r_max",
                  fmt::format("must be at most half the shortest periodic edge of the box, {}",
                              0.5 * scene.box().size[c]));
-  return std::make_unique<Rdf<D>>(std::move(settings), r_max, entry.positive_integer("bins", 100),
-                                  scene);
+  const std::int64_t bins = entry.positive_integer("bins", 100);
+  std::optional<RdfComparison> comparison;
+  if (entry.has("reference")) {
+    comparison = {entry.number("reference"), entry.non_negative("compare_from", 0.0),
+                  entry.positive("compare_to", r_max)};
+    if (comparison->to - comparison->from < r_max / static_cast<double>(bins) ||
+        comparison->to > r_max)
+      entry.fail("compare_to", fmt::format("must be at least a bin above compare_from and at most "
+                                           "r_max = {}",
+                                           r_max));
+  }
+  return std::make_unique<Rdf<D>>(std::move(settings), r_max, bins, scene, comparison);
 }
 
 template <int D>

@@ -18,12 +18,14 @@ double ball(double r) {
 }  // namespace
 
 template <int D>
-Rdf<D>::Rdf(ObserverSettings settings, double r_max, std::int64_t bins, const Scene<D>& scene)
+Rdf<D>::Rdf(ObserverSettings settings, double r_max, std::int64_t bins, const Scene<D>& scene,
+            std::optional<RdfComparison> comparison)
     : Observer<D>(std::move(settings)),
       r_max_(r_max),
       bins_(static_cast<std::size_t>(bins)),
       scene_(scene),
       species_(scene.settings().species.size()),
+      comparison_(comparison),
       average_(species_ * (species_ + 1) / 2 * bins_) {}
 
 template <int D>
@@ -98,9 +100,7 @@ void Rdf<D>::add_results(Results& results) const {
               .x_label = "r / r_c",
               .y_label = "g(r)",
               .curves = {}};
-  const double dr = r_max_ / static_cast<double>(bins_);
-  for (std::size_t k = 0; k < bins_; ++k)
-    table.rows.push_back({dr * (static_cast<double>(k) + 0.5)});
+  for (std::size_t k = 0; k < bins_; ++k) table.rows.push_back({middle(k)});
   std::size_t column = 0;
   for (std::size_t a = 0; a < species_; ++a)
     for (std::size_t b = a; b < species_; ++b) {
@@ -122,6 +122,26 @@ void Rdf<D>::add_results(Results& results) const {
     }
   results.tables.emplace_back(this->settings().name, std::move(table));
   results.charts.emplace_back(this->settings().name, std::move(chart));
+  if (comparison_) add_deviations(results);
+}
+
+template <int D>
+void Rdf<D>::add_deviations(Results& results) const {
+  double sum = 0.0, count = 0.0;
+  Scalar largest{this->settings().name + ".largest_deviation", 0.0, std::nan("")};
+  for (std::size_t column = 0; column < average_.width(); ++column) {
+    const double r = middle(column % bins_);
+    if (r < comparison_->from || r > comparison_->to) continue;
+    const double deviation = std::abs(average_.mean(column) - comparison_->value);
+    sum += deviation * deviation;
+    count += 1.0;
+    if (deviation < largest.mean) continue;
+    largest.mean = deviation;
+    largest.standard_error = average_.standard_error(column);
+  }
+  results.scalars.push_back(
+      {this->settings().name + ".rms_deviation", std::sqrt(sum / count), std::nan("")});
+  results.scalars.push_back(std::move(largest));
 }
 
 template class Rdf<2>;

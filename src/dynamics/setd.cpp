@@ -78,6 +78,7 @@ const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
     last_force_ = by_identity(dynamics, force);
   }
 
+  PhaseTimer timer(dynamics.phases(), Phase::solve);
   std::vector<std::array<double, static_cast<std::size_t>(D * D)>> blocks(
       record.start.position.size());
   add_friction_blocks<D>(record.start.network, blocks);

@@ -116,7 +116,7 @@ void Shardlow<D>::drag(Dynamics<D>& dynamics, const Clock& clock,
   const DynamicsSettings& s = dynamics.settings();
   if (s.zeta_0 == 0.0) return;
   std::vector<Vec<D>> w(velocity.size());
-  if (s.kT > 0.0)
+  if (dynamics.model().thermal())
     add_drag_noise(dynamics.particles(), s.seed, static_cast<std::uint64_t>(clock.step), 1.0, w);
   for (std::size_t i = 0; i < velocity.size(); ++i)
     for (int c = 0; c < D; ++c)

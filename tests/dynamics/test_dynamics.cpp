@@ -6,47 +6,14 @@
 #include <memory>
 
 #include "odpd/core/error.h"
-#include "odpd/core/parallel.h"
 #include "odpd/dynamics/dynamics.h"
 #include "odpd/dynamics/integrator.h"
 #include "odpd/operator/edge_sums.h"
 #include "odpd/pairs/dpd.h"
+#include "toy.h"
 
 namespace odpd {
 namespace {
-
-// A periodic box of fluid; `walled` adds a row of particles that move with velocity (0.5, 0) along x.
-class MovingRow : public NoSurroundings<2> {
- public:
-  Vec<2> known_velocity(std::int32_t, double) const override { return {{0.5, 0.0}}; }
-};
-
-struct Toy {
-  explicit Toy(double kT, bool walled = false,
-               SolverOptions solver = {.name = "pcg", .tolerance = 1e-10})
-      : model(1, {DpdParameters{.kT = kT}}) {
-    for (int x = 0; x < 10; ++x)
-      for (int y = 0; y < 10; ++y)
-        particles.add(
-            {{0.5 * x + 0.1 * std::sin(3.0 * x + y), 0.5 * y + 0.1 * std::cos(2.0 * x - y)}}, 0, 0);
-    for (Vec<2>& r : particles.position) box.wrap(r);
-    if (walled)
-      for (int x = 0; x < 10; ++x) particles.add({{0.5 * x, 2.5}}, 0, 1);
-    dynamics = std::make_unique<Dynamics<2>>(box, particles, model, row, make_solver(solver),
-                                             DynamicsSettings{});
-  }
-  void run(const std::string& scheme, double dt, std::int64_t steps) {
-    const auto integrator = make_integrator<2>(scheme);
-    for (Clock clock{.dt = dt, .total_steps = steps}; !clock.finished(); clock.advance())
-      integrator->step(*dynamics, clock);
-  }
-
-  Box<2> box{{{5.0, 5.0}}, {true, true}};
-  Particles<2> particles;
-  DpdModel<2> model;
-  MovingRow row;
-  std::unique_ptr<Dynamics<2>> dynamics;
-};
 
 TEST(Dynamics, ForcesBalanceOnEveryFreeParticle) {
   Toy toy(1.0, true);
@@ -89,47 +56,6 @@ TEST(Dynamics, CentreOfMassRestsInAPeriodicBox) {
   for (std::size_t i = 0; i < toy.particles.position.size(); ++i)
     moved += toy.particles.velocity[i];
   EXPECT_LT(norm(moved), 1e-10);
-}
-
-// Without noise the schemes are the explicit trapezoidal and Euler rules: errors fall with dt^2 and dt.
-TEST(Dynamics, OrdersWithoutNoise) {
-  const auto end_of = [](const std::string& scheme, std::int64_t steps) {
-    Toy toy(0.0);
-    toy.run(scheme, 0.08 / static_cast<double>(steps), steps);
-    std::vector<Vec<2>> by_id;
-    for (const std::int32_t i : toy.particles.index_of_id())
-      by_id.push_back(toy.particles.position[static_cast<std::size_t>(i)]);
-    return by_id;
-  };
-  const std::vector<Vec<2>> exact = end_of("trapezoidal", 512);
-  const auto error = [&](const std::string& scheme, std::int64_t steps) {
-    const Box<2> box{{{5.0, 5.0}}, {true, true}};
-    const std::vector<Vec<2>> end = end_of(scheme, steps);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < end.size(); ++i) {
-      const Vec<2> d = box.separation(end[i], exact[i]);
-      sum += dot(d, d);
-    }
-    return std::sqrt(sum);
-  };
-  // w_D has no smooth derivative at the cutoff, which keeps the ratios a little below 4 and 2.
-  EXPECT_GT(error("trapezoidal", 8) / error("trapezoidal", 16), 3.0);
-  const double euler = error("euler", 16) / error("euler", 32);
-  EXPECT_GT(euler, 1.7);
-  EXPECT_LT(euler, 2.4);
-}
-
-TEST(Dynamics, SameBitsOnAnyThreadCount) {
-  const auto end_of = [](int count) {
-    set_threads(count, 0);
-    Toy toy(1.0, true);
-    toy.run("trapezoidal", 0.005, 10);
-    set_threads(1, 0);
-    return toy.particles.position;
-  };
-  const auto one = end_of(1);
-  EXPECT_EQ(one, end_of(2));
-  EXPECT_EQ(one, end_of(3));
 }
 
 template <class Action>

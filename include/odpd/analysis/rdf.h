@@ -4,16 +4,29 @@
 //   g_AB(r) = V <pairs AB with distance in the bin> / (pairs of particles AB in all * volume of the shell)
 //
 // with N(N-1)/2 pairs for A = B, so that an ideal gas has g = 1 at any N. Distances up to half the shortest periodic
-// edge. With walls, V is the volume between them and g falls off near them: read it as relative.
+// edge. With walls, V is the volume between them and g falls off near them: read it as relative. Where g has a value to be
+// compared with (1 in an ideal gas), over the bins whose middle lies between two distances:
+//
+//   <name>.rms_deviation = sqrt(mean_k (g_k - value)^2),   <name>.largest_deviation = max_k |g_k - value|
+//
+// Both contain the noise of the bins; the second carries the standard error of the bin where it is.
+#include <optional>
+
 #include "odpd/analysis/block_average.h"
 #include "odpd/analysis/observer.h"
 
 namespace odpd {
 
+struct RdfComparison {
+  double value = 1.0;
+  double from = 0.0, to = 0.0;  ///< distances (length)
+};
+
 template <int D>
 class Rdf : public Observer<D> {
  public:
-  Rdf(ObserverSettings settings, double r_max, std::int64_t bins, const Scene<D>& scene);
+  Rdf(ObserverSettings settings, double r_max, std::int64_t bins, const Scene<D>& scene,
+      std::optional<RdfComparison> comparison = {});
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
@@ -26,11 +39,16 @@ class Rdf : public Observer<D> {
   std::size_t pair_index(std::int32_t a, std::int32_t b) const;
   /// Per column: turns pair counts of these particles into g.
   std::vector<double> factors(const Particles<D>& particles) const;
+  double middle(std::size_t bin) const {
+    return r_max_ / static_cast<double>(bins_) * (static_cast<double>(bin) + 0.5);
+  }
+  void add_deviations(Results& results) const;
 
   double r_max_;
   std::size_t bins_;
   const Scene<D>& scene_;
   std::size_t species_;
+  std::optional<RdfComparison> comparison_;
   BlockAverage average_;
   std::vector<double> newest_;
 };
