@@ -21,6 +21,12 @@ expect_exit 0 "$odpd" run channel --dry-run --set fluid.kT=0.0 --set fluid.a=0.0
 expect_text "$out_text" '48 free particles' '36 of known velocity' '- conservative force' '- random force' '+ walls' \
   '2 [[wall]]' '+ body force' '- second solve per step' '+ assembled matrix'
 
+# The fluid in both languages. By hand at n = 4, s = 1/2: eta = 4.5 16 (64 pi/315)/16, p = 4 + 18.5 16 pi/24.
+expect_exit 0 "$odpd" run box --dry-run
+expect_text "$out_text" 'a = 18.5 s_bar = 1' 'gamma = 4.5 sigma = 3' 'eta_friction = 2.87231' 'pressure = 42.7463' \
+  'Sc = infinite' 'eta: not in this run'
+expect test -z "$(grep 'asked for' "$out_text")"
+
 # Every case that comes with the program is in order.
 for case in "$source_root"/cases/*/case.toml; do
   checks=$((checks + 1))
