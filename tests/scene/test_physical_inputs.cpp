@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "cases.h"
-#include "odpd/scene/physical_inputs.h"
+#include "odpd/scene/physical_keys.h"
 #include "support/dimensions.h"
 #include "support/errors.h"
 
@@ -210,6 +210,20 @@ TEST(PhysicalInputs, ThesisSchmidtNumbersOfThreeLevels) {
     EXPECT_NEAR(k.eta_friction / (k.rho * k.diffusion), level.Sc, 0.5);
     EXPECT_NEAR(k.kappa_inverse, water, 1e-9);
   }
+}
+
+TEST(PhysicalInputs, RhoIsDensityTimesMass) {
+  const auto fluid = [](const std::string& text) {
+    return odpd::Config::from_text("[fluid]\n" + text, "case.toml").table("fluid");
+  };
+  EXPECT_DOUBLE_EQ(odpd::density_of_rho(fluid("rho = 8.0\nmass = 2.0\n")), 4.0);
+  EXPECT_DOUBLE_EQ(odpd::mass_of_rho(fluid("rho = 8.0\n"), 4.0), 2.0);
+  expect_error<odpd::ConfigError>([&] { odpd::density_of_rho(fluid("rho = 8.0\n")); },
+                                  {"fluid.rho", "two of"});
+  expect_error<odpd::ConfigError>([&] { odpd::density_of_rho(fluid("rho = 8.0\nmass = 0.0\n")); },
+                                  {"fluid.rho", "mass = 0"});
+  expect_error<odpd::ConfigError>([&] { odpd::mass_of_rho(fluid("rho = 8.0\nmass = 1.0\n"), 4.0); },
+                                  {"fluid.rho", "never three"});
 }
 
 // Figure 3.4: sigma = 3, a = 3.5320 is alpha = 8.5997, eta = 16.9721, Sc = 164.52 by kinetic theory.
