@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "odpd/app/fluid_report.h"
 #include "odpd/core/parallel.h"
 
 namespace odpd {
@@ -81,7 +82,7 @@ std::string dry_run_text(Simulation<D>& simulation) {
       stage_seconds * std::max(simulation.integrator().solves(), 1) *
           static_cast<double>(clock.total_steps),
       1e3 * stage_seconds, threads());
-  return out + modelled(simulation);
+  return out + modelled(simulation) + "\n" + fluid_text(simulation.scene(), Results{});
 }
 
 template std::string dry_run_text<2>(Simulation<2>&);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/app/fluid_report.h"
 #include "odpd/core/parallel.h"
 #include "odpd/io/json.h"
 #include "odpd/version.h"
@@ -132,6 +133,7 @@ std::string summary_json(const Simulation<D>& simulation, const Results& results
   json.set("wall_seconds", simulation.wall_seconds());
   json.set("phase_seconds", phases_json(simulation.dynamics().phases()));
   json.set("solver", solver_json(simulation));
+  json.set("fluid", fluid_json(simulation.scene(), results));
   json.set("observables", observables).set("checks", checks_json(checks));
   json.set("alarm_crossings", simulation.alarm_crossings());
   std::vector<JsonObject> notes;
@@ -158,6 +160,7 @@ std::string report_text(const Simulation<D>& simulation, const Results& results,
       static_cast<double>(s.iterations) / static_cast<double>(std::max<std::int64_t>(s.solves, 1)),
       s.most_iterations, s.worst_residual);
   if (!s.problem.empty()) out += fmt::format("  problem solved: {}\n", s.problem);
+  out += "\n" + fluid_text(simulation.scene(), results);
   out += "\nMeasured (standard error by block averaging)\n";
   for (const Scalar& scalar : results.scalars)
     out +=

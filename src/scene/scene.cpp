@@ -18,27 +18,6 @@ Scene<D>::Scene(SceneSettings<D> settings)
 }
 
 template <int D>
-Vec<D> Scene<D>::fluid_low() const {
-  Vec<D> low{};
-  for (const auto& wall : settings_.walls)
-    if (!wall.high) low[wall.axis] = wall.thickness;
-  return low;
-}
-
-template <int D>
-Vec<D> Scene<D>::fluid_high() const {
-  Vec<D> high = settings_.box.size;
-  for (const auto& wall : settings_.walls)
-    if (wall.high) high[wall.axis] -= wall.thickness;
-  return high;
-}
-
-template <int D>
-double Scene<D>::fluid_volume() const {
-  return Box<D>{fluid_high() - fluid_low(), {}}.volume();
-}
-
-template <int D>
 double Scene<D>::largest_kT() const {
   double kT = 0.0;
   for (const DpdParameters& p : settings_.pairs) kT = std::max(kT, p.kT);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/scene/physical_keys.h"
+
 namespace odpd {
 
 namespace {
@@ -95,23 +97,62 @@ std::vector<SpeciesSettings> read_species(const Config& config) {
 }
 
 template <int D>
-void read_fluid(const Config& config, SceneSettings<D>& scene) {
-  const Config fluid = config.table("fluid");
-  fluid.choice("model", {"dpd"}, "dpd");
-  scene.mass = fluid.non_negative("mass", 0.0);
+void read_amount(const Config& fluid, SceneSettings<D>& scene) {
   if (fluid.has("density") && fluid.has("count"))
     fluid.fail("count", "give density or count, never both");
-  if (scene.start == StartKind::file && (fluid.has("density") || fluid.has("count")))
-    fluid.fail(fluid.has("density") ? "density" : "count",
-               "the start file says how many particles there are: leave this "
-               "key out, or set start.from");
+  for (const char* key : {"density", "count", "rho"})
+    if (scene.start == StartKind::file && fluid.has(key))
+      fluid.fail(key,
+                 "the start file says how many particles there are: leave this "
+                 "key out, or set start.from");
   if (fluid.has("count")) {
     scene.count = fluid.integer("count");
     if (scene.count < 1) fluid.fail("count", "must be positive");
+  } else if (fluid.has("rho") && !fluid.has("density")) {
+    scene.density = density_of_rho(fluid);
   } else if (scene.start != StartKind::file) {
     scene.density = fluid.positive("density");
   }
-  DpdParameters base = read_pair(fluid, DpdParameters{}, true);
+}
+
+template <int D>
+void read_pairs(const Config& config, SceneSettings<D>& scene) {
+  const std::size_t n = scene.species.size();
+  scene.pairs.assign(n * n, scene.fluid);
+  for (const Config& entry : config.tables("pair")) {
+    const std::vector<std::string> names = entry.texts("species");
+    if (names.size() != 2) entry.fail("species", "two names are needed");
+    const auto a =
+        static_cast<std::size_t>(species_index(scene.species, entry, "species", names[0]));
+    const auto b =
+        static_cast<std::size_t>(species_index(scene.species, entry, "species", names[1]));
+    const DpdParameters p = read_pair(entry, scene.fluid, false);
+    scene.pairs[a * n + b] = p;
+    scene.pairs[b * n + a] = p;
+  }
+}
+
+// Needs the walls, as the volume between them turns a count into a density.
+template <int D>
+void read_fluid(const Config& config, SceneSettings<D>& scene) {
+  const Config fluid = config.table("fluid");
+  fluid.choice("model", {"dpd"}, "dpd");
+  read_amount(fluid, scene);
+  const double density =
+      scene.count > 0 ? static_cast<double>(scene.count) / scene.fluid_volume() : scene.density;
+  const bool amount = fluid.has("density") || fluid.has("count");
+  scene.mass =
+      fluid.has("rho") && amount ? mass_of_rho(fluid, density) : fluid.non_negative("mass", 0.0);
+  scene.physical_inputs = read_physical_inputs(fluid);
+  if (scene.physical_inputs.any() && scene.start == StartKind::file)
+    fluid.fail(
+        "eta",
+        "physical inputs need the density, which a start file says too late: give gamma, s, a "
+        "and s_bar instead (`odpd run --dry-run` of the case without the file prints them)");
+  DpdParameters base =
+      scene.physical_inputs.any()
+          ? read_physical_fluid<D>(fluid, scene.physical_inputs, density, scene.mass)
+          : read_pair(fluid, DpdParameters{}, true);
   if (fluid.has("rattler_friction")) {
     const Config far = fluid.table("rattler_friction");
     base.gamma_far = far.positive("gamma");
@@ -122,19 +163,8 @@ void read_fluid(const Config& config, SceneSettings<D>& scene) {
                    "must be larger than fluid.cutoff = {}, to reach particles without neighbours",
                    base.cutoff));
   }
-  const std::size_t n = scene.species.size();
-  scene.pairs.assign(n * n, base);
-  for (const Config& entry : config.tables("pair")) {
-    const std::vector<std::string> names = entry.texts("species");
-    if (names.size() != 2) entry.fail("species", "two names are needed");
-    const auto a =
-        static_cast<std::size_t>(species_index(scene.species, entry, "species", names[0]));
-    const auto b =
-        static_cast<std::size_t>(species_index(scene.species, entry, "species", names[1]));
-    const DpdParameters p = read_pair(entry, base, false);
-    scene.pairs[a * n + b] = p;
-    scene.pairs[b * n + a] = p;
-  }
+  scene.fluid = base;
+  read_pairs(config, scene);
 }
 
 // A drag relative to the frame at rest screens flow beyond sqrt(eta/(n zeta_0)) and takes momentum away.
@@ -268,6 +298,27 @@ int SceneSettings<D>::wall_at(int axis, bool high) const {
 }
 
 template <int D>
+Vec<D> SceneSettings<D>::fluid_low() const {
+  Vec<D> low{};
+  for (const auto& wall : walls)
+    if (!wall.high) low[wall.axis] = wall.thickness;
+  return low;
+}
+
+template <int D>
+Vec<D> SceneSettings<D>::fluid_high() const {
+  Vec<D> high = box.size;
+  for (const auto& wall : walls)
+    if (wall.high) high[wall.axis] -= wall.thickness;
+  return high;
+}
+
+template <int D>
+double SceneSettings<D>::fluid_volume() const {
+  return Box<D>{fluid_high() - fluid_low(), {}}.volume();
+}
+
+template <int D>
 SceneSettings<D> read_scene_settings(const Config& config) {
   SceneSettings<D> scene;
   const std::int64_t seed = config.integer("seed", 1);
@@ -276,8 +327,8 @@ SceneSettings<D> read_scene_settings(const Config& config) {
   scene.box = read_box<D>(config.table("box"));
   scene.species = read_species(config);
   read_start(config, scene);
-  read_fluid(config, scene);
   read_walls(config, scene);
+  read_fluid(config, scene);
   const Config body_force = config.table("body_force");
   scene.body_force = read_optional_vector<D>(body_force, "force");
   if (scene.walls.empty() && dot(scene.body_force, scene.body_force) > 0.0)

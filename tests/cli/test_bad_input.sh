@@ -72,6 +72,30 @@ expect_error 1 run box --set integrator.name=shardlow -- '--set integrator.name'
 expect_error 1 run box --set integrator.name=velocity-verlet --set integrator.lambda=2 --set fluid.mass=1 -- integrator.lambda
 expect_error 1 run box --set integrator.lambda=0.5 -- integrator.lambda
 expect_error 1 run channel --set fluid.zeta_0=0.1 --set 'wall.0.velocity=[1.0, 0.0]' -- fluid.zeta_0 zeta_0_under_flow rattler_friction
+# Physical inputs: both sets at once, and what the formulas cannot give.
+physical=(--set fluid.eta=3.0)
+expect_error 1 run box "${physical[@]}" -- "box/case.toml:$(line_of box 'gamma = 4.5')" fluid.gamma eta
+bad physical
+sed -i '/^gamma/d; /^a = /d' physical/case.toml
+expect_error 1 run physical --set fluid.eta=3.0 -- fluid.a
+expect_error 1 run physical "${physical[@]}" --set fluid.a=1.0 --set fluid.sigma=3.0 -- '--set fluid.sigma' eta
+expect_error 1 run physical "${physical[@]}" --set fluid.a=1.0 --set fluid.gamma_perp=1.0 -- '--set fluid.gamma_perp'
+expect_error 1 run physical --set fluid.kappa_inverse=20.0 --set fluid.a=9.0 -- fluid.eta viscosity
+expect_error 1 run physical "${physical[@]}" --set fluid.alpha=1.0 -- '--set fluid.alpha' 'mass = 0'
+expect_error 1 run physical "${physical[@]}" --set fluid.a=9.0 --set fluid.Sc=1e5 -- '--set fluid.Sc' 'mass = 0'
+expect_error 1 run physical "${physical[@]}" --set fluid.a=9.0 --set fluid.Sc=1e5 --set fluid.s=1.0 -- '--set fluid.s' Sc
+expect_error 1 run physical "${physical[@]}" --set fluid.alpha=1.0 --set fluid.a=9.0 -- '--set fluid.a' alpha
+expect_error 1 run physical "${physical[@]}" --set fluid.kappa_inverse=20.0 -- '--set fluid.kappa_inverse' s_bar alpha
+expect_error 1 run physical "${physical[@]}" --set fluid.kappa_inverse=0.9 --set fluid.s_bar=1.0 -- '--set fluid.kappa_inverse' 'larger than 1'
+expect_error 1 run physical "${physical[@]}" --set fluid.kappa_inverse=20.0 --set fluid.a=1.0 -- '--set fluid.kappa_inverse' 'too stiff' 6
+expect_error 1 run physical "${physical[@]}" --set fluid.kappa_inverse=20.0 --set fluid.s_bar=1.0 --set fluid.kT=0.0 -- '--set fluid.kappa_inverse' kT
+expect_error 1 run box --set fluid.rho=4.0 --set fluid.mass=1.0 -- '--set fluid.rho' density mass
+expect_exit 0 run physical "${physical[@]}" --set fluid.kappa_inverse=20.0 --set fluid.s_bar=1.0 --out physical_run
+expect_text "$out_text" 'asked for' 'kappa_inverse = 20' 'eta = 3 ' 'Kinetic theory is a guide'
+expect_text physical_run/summary.json '"viscosity_measured": null' '"asked_for"' '"kinetic_theory"'
+# The resolved case holds what was given, not what followed from it: it runs again.
+expect_exit 0 run physical_run --out again
+expect cmp physical_run/case.toml again/case.toml
 expect_error 1 run box --set dimension=4 -- '--set dimension' '2 or 3'
 expect_error 1 run box --set seed=-3 -- '--set seed'
 expect_error 1 run box --set run.duration=0.001 -- '--set run.duration' integrator.dt

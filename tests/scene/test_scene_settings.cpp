@@ -65,6 +65,57 @@ from = "lattice"
   EXPECT_EQ(scene.relax_sweeps, 0);
 }
 
+const char* by_properties = R"(
+[box]
+size = [4.0, 5.0]
+periodic = [true, true]
+[fluid]
+count = 80
+kT = 1.0
+eta = 3.0
+kappa_inverse = 20.0
+s_bar = 1.0
+[[species]]
+name = "water"
+fraction = 0.5
+[[species]]
+name = "oil"
+fraction = 0.5
+[[pair]]
+species = ["water", "oil"]
+a = 60.0
+)";
+
+TEST(SceneSettings, PhysicalInputsSetTheFluidAndPairsOverride) {
+  const auto scene = settings<2>(by_properties);
+  const auto theory = odpd::kinetic_theory<2>(scene.fluid, 4.0, 0.0);
+  EXPECT_NEAR(theory.eta_friction, 3.0, 1e-12);
+  EXPECT_NEAR(theory.kappa_inverse, 20.0, 1e-12);
+  EXPECT_EQ(scene.pairs[0], scene.fluid);
+  EXPECT_EQ(scene.pairs[1].a, 60.0);
+  EXPECT_EQ(scene.pairs[1].gamma, scene.fluid.gamma);
+}
+
+TEST(SceneSettings, TheResolvedCaseHoldsPhysicalInputsAndNothingDerived) {
+  const odpd::Config first = odpd::Config::from_text(by_properties, "case.toml");
+  const auto scene = odpd::read_scene_settings<2>(first);
+  EXPECT_NO_THROW(first.reject_unread());
+  EXPECT_EQ(settings<2>(first.resolved()).pairs, scene.pairs);
+}
+
+TEST(SceneSettings, PhysicalInputsCountParticlesBetweenTheWalls) {
+  // 400 particles in 10 x 10 between walls of thickness 1 are a density of 4.
+  const std::string text = channel;
+  const auto without = [&](std::string line, std::string from) {
+    return from.erase(from.find(line), line.size());
+  };
+  const std::string bare = without("gamma = 4.5\n", text);
+  const auto by_density = settings<2>(bare, {"fluid.eta=3.0"});
+  const auto by_count =
+      settings<2>(without("density = 4.0\n", bare), {"fluid.eta=3.0", "fluid.count=400"});
+  EXPECT_DOUBLE_EQ(by_count.fluid.gamma, by_density.fluid.gamma);
+}
+
 TEST(SceneSettings, PairsOfSpeciesInheritFromTheFluid) {
   const auto scene = settings<3>(std::string(periodic) + R"(
 [[species]]

@@ -24,9 +24,9 @@ class Scene : public Surroundings<D> {
   const PairModel<D>& model() const { return *model_; }
 
   /// Ends of the space between the wall surfaces (the box itself where it is periodic).
-  Vec<D> fluid_low() const;
-  Vec<D> fluid_high() const;
-  double fluid_volume() const;
+  Vec<D> fluid_low() const { return settings_.fluid_low(); }
+  Vec<D> fluid_high() const { return settings_.fluid_high(); }
+  double fluid_volume() const { return settings_.fluid_volume(); }
   double largest_kT() const;
   /// Nothing takes momentum from the particles: no walls and no uniform drag.
   bool conserves_momentum() const { return settings_.walls.empty() && settings_.zeta_0 == 0.0; }

@@ -7,6 +7,7 @@
 #include "odpd/core/config.h"
 #include "odpd/geometry/box.h"
 #include "odpd/pairs/dpd.h"
+#include "odpd/scene/physical_inputs.h"
 
 namespace odpd {
 
@@ -44,10 +45,12 @@ struct SceneSettings {
   Box<D> box;
   std::vector<SpeciesSettings> species{SpeciesSettings{}};
   std::vector<DpdParameters> pairs{DpdParameters{}};  ///< [A * species.size() + B]
-  std::int64_t count = 0;                             ///< fluid particles; 0: by density
-  double density = 4.0;  ///< fluid particles per volume between the walls
-  double mass = 0.0;     ///< of every fluid particle
-  double zeta_0 = 0.0;   ///< uniform drag on every fluid particle (mass/time)
+  DpdParameters fluid;                                ///< of [fluid], before any [[pair]]
+  PhysicalInputs physical_inputs;  ///< that [fluid] gives in place of DPD parameters; may be none
+  std::int64_t count = 0;          ///< fluid particles; 0: by density
+  double density = 4.0;            ///< fluid particles per volume between the walls
+  double mass = 0.0;               ///< of every fluid particle
+  double zeta_0 = 0.0;             ///< uniform drag on every fluid particle (mass/time)
   std::vector<WallSettings<D>> walls;
   Vec<D> body_force{};  ///< on every free particle (force)
   StartKind start = StartKind::random;
@@ -59,6 +62,10 @@ struct SceneSettings {
   /// Something drives a flow: a body force or a moving wall.
   bool driven() const;
   int wall_at(int axis, bool high) const;  ///< index into walls, -1 when there is none
+  /// Ends of the space between the wall surfaces (the box itself where it is periodic), and its volume.
+  Vec<D> fluid_low() const;
+  Vec<D> fluid_high() const;
+  double fluid_volume() const;
 };
 
 /// Reads [box], [fluid], [[species]], [[pair]], [[wall]], [body_force], [start] and `seed`. Throws ConfigError for

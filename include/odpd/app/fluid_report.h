@@ -1,0 +1,24 @@
+#pragma once
+// The fluid in both languages: the DPD parameters it runs with, what was asked for, what kinetic theory says of it, and
+// the viscosity that the run measured, where it measured one.
+#include <string>
+
+#include "odpd/analysis/results.h"
+#include "odpd/io/json.h"
+#include "odpd/scene/scene.h"
+
+namespace odpd {
+
+/// Some lines for the dry run and the report. `results` of a dry run are empty.
+template <int D>
+std::string fluid_text(const Scene<D>& scene, const Results& results);
+
+/// "fluid" of summary.json: "state", "dpd", "asked_for", "kinetic_theory", "viscosity_measured" (null where none was measured);
+/// a number that is infinite is null.
+template <int D>
+JsonObject fluid_json(const Scene<D>& scene, const Results& results);
+
+/// The first measured observable named `<observer>.viscosity`, or nullptr.
+const Scalar* measured_viscosity(const Results& results);
+
+}  // namespace odpd

@@ -1,0 +1,72 @@
+#pragma once
+// A DPD fluid by its physical properties (Nguyen 2021, eq. 3.1-3.20), from kinetic theory without structure (g = 1,
+// particles that follow the mean flow; Marsh 1998). With [f] the integral of f over d-dimensional space:
+//
+//   pressure       p = n kT + n^2 [R f_C]/(2 d)                         (3.1), (3.2)
+//   compressibility  kappa^-1 = (dp/dn)/kT                              (3.4)  ->  s_bar (3.6), (3.7), or a
+//   time scales    alpha = gamma^2 r_c/(m a)                            (3.3)  ->  a (3.5)
+//   viscosity      eta = gamma n^2 [R^2 w_D]/(2 d (d+2))                (3.8)  ->  gamma (3.14), (3.18); s = 1/2: (3.9), (3.10)
+//   dynamics       Sc = eta/(rho D),  D = d kT/(n gamma [w_D]),  rho = n m  (3.12)  ->  s (3.13), (3.17)
+//
+// These are estimates: the viscosity of friction alone is at most eta, and much less at small mass and density.
+#include <optional>
+#include <string>
+
+#include "odpd/core/error.h"
+#include "odpd/pairs/dpd.h"
+
+namespace odpd {
+
+/// What is asked of a fluid; what is absent stays as its DPD parameters say.
+struct PhysicalInputs {
+  std::optional<double> eta;    ///< viscosity of friction (energy time/length^d), sets gamma
+  std::optional<double> Sc;     ///< Schmidt number, sets s
+  std::optional<double> alpha;  ///< ratio of relaxation to inertia time, sets a
+  std::optional<double> kappa_inverse;  ///< dp/dn over kT, sets s_bar, or a where `keep_s_bar`
+  bool keep_s_bar = false;              ///< a follows from kappa_inverse and s_bar; not with alpha
+
+  bool any() const { return eta || Sc || alpha || kappa_inverse; }
+};
+
+/// A condition of the formulas is not met; `key` is the input to blame.
+class PhysicalInputError : public ConfigError {
+ public:
+  PhysicalInputError(std::string key, const std::string& message)
+      : ConfigError(key + ": " + message), key_(std::move(key)), message_(message) {}
+  const std::string& key() const { return key_; }
+  const std::string& message() const { return message_; }  ///< without the key
+
+ private:
+  std::string key_, message_;
+};
+
+/// The DPD parameters of a fluid with these properties at number density n (1/length^d) and particle mass: gamma, s, a
+/// and s_bar where `inputs` set them, everything else that of `base`. Throws PhysicalInputError: inputs out of range,
+/// other inputs without eta, alpha or Sc at mass = 0, Sc or kappa_inverse at kT = 0, kappa_inverse <= 1, and
+/// conditions for s > 0 (3.16, 3.20) and s_bar > 0 (C > 24 in 3D, 6 in 2D).
+template <int D>
+DpdParameters dpd_parameters(const PhysicalInputs& inputs, const DpdParameters& base,
+                             double density, double mass);
+
+/// What kinetic theory says of a fluid. Infinite: Sc, alpha and speed_of_sound at mass = 0, alpha at a = 0,
+/// diffusion at gamma = 0, kappa_inverse at kT = 0.
+struct KineticTheory {
+  double rho = 0.0;             ///< n m (mass/length^d)
+  double eta_friction = 0.0;    ///< (3.8); an upper bound on that of friction alone
+  double eta_kinetic = 0.0;     ///< rho D/2 (3.12)
+  double diffusion = 0.0;       ///< D, of friction alone (length^2/time)
+  double Sc = 0.0;              ///< eta()/(rho D): 1/2 above that of eta_friction
+  double alpha = 0.0;           ///< (3.3)
+  double pressure = 0.0;        ///< (3.1), (3.2) (energy/length^d)
+  double bulk_modulus = 0.0;    ///< n dp/dn (energy/length^d)
+  double kappa_inverse = 0.0;   ///< (3.4)
+  double speed_of_sound = 0.0;  ///< sqrt((dp/dn)/m) (3.42)
+
+  double eta() const { return eta_friction + eta_kinetic; }
+};
+
+/// The reverse of `dpd_parameters`. Of the friction it counts gamma alone, not gamma_perp and gamma_far.
+template <int D>
+KineticTheory kinetic_theory(const DpdParameters& p, double density, double mass);
+
+}  // namespace odpd

@@ -1,0 +1,147 @@
+#include "odpd/app/fluid_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "odpd/app/report.h"
+
+namespace odpd {
+
+namespace {
+
+using Named = std::vector<std::pair<std::string, double>>;
+
+template <int D>
+double density_of(const Scene<D>& scene) {
+  return static_cast<double>(scene.particles().free_count()) / scene.fluid_volume();
+}
+
+template <int D>
+Named state_values(const Scene<D>& scene) {
+  const DpdParameters& p = scene.settings().fluid;
+  return {{"density", density_of(scene)},
+          {"mass", scene.settings().mass},
+          {"kT", p.kT},
+          {"cutoff", p.cutoff}};
+}
+
+Named dpd_values(const DpdParameters& p) {
+  return {{"a", p.a},
+          {"s_bar", p.s_bar},
+          {"gamma", p.gamma},
+          {"sigma", std::sqrt(2.0 * p.gamma * p.kT)},
+          {"s", p.s}};
+}
+
+Named asked_values(const PhysicalInputs& in) {
+  Named values;
+  const auto add = [&](const char* name, const std::optional<double>& value) {
+    if (value) values.emplace_back(name, *value);
+  };
+  add("eta", in.eta);
+  add("Sc", in.Sc);
+  add("alpha", in.alpha);
+  add("kappa_inverse", in.kappa_inverse);
+  return values;
+}
+
+Named kinetic_values(const KineticTheory& k) {
+  return {{"eta", k.eta()},
+          {"eta_friction", k.eta_friction},
+          {"eta_kinetic", k.eta_kinetic},
+          {"kappa_inverse", k.kappa_inverse},
+          {"alpha", k.alpha},
+          {"Sc", k.Sc},
+          {"rho", k.rho},
+          {"diffusion", k.diffusion},
+          {"pressure", k.pressure},
+          {"bulk_modulus", k.bulk_modulus},
+          {"speed_of_sound", k.speed_of_sound}};
+}
+
+std::string line(const char* head, const Named& values) {
+  constexpr std::size_t per_line = 5;
+  std::string out;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (k % per_line == 0) out += fmt::format("{}  {:<15}", k > 0 ? "\n" : "", k > 0 ? "" : head);
+    const double value = values[k].second;
+    out += " " + values[k].first + " = " +
+           (std::isinf(value) ? "infinite" : fmt::format("{:.6g}", value));
+  }
+  return out + "\n";
+}
+
+JsonObject json_of(const Named& values) {
+  JsonObject json;
+  for (const auto& [name, value] : values) json.set(name, value);
+  return json;
+}
+
+// What the numbers above leave out, for this fluid.
+template <int D>
+std::string limits(const Scene<D>& scene) {
+  const SceneSettings<D>& settings = scene.settings();
+  std::string out =
+      "  Kinetic theory is a guide: it knows no structure and lets particles follow the mean flow. "
+      "At small mass the\n  viscosity of friction alone is at most eta_friction, often a fraction "
+      "of it, and repulsion adds its share:\n  measure it (docs/physical-inputs.md)\n";
+  if (settings.fluid.gamma_perp > 0.0 || settings.fluid.gamma_far > 0.0)
+    out += "  Of the friction it counts gamma alone, not gamma_perp and rattler_friction\n";
+  if (settings.species.size() > 1)
+    out += "  These are the parameters of [fluid]; a [[pair]] may have others\n";
+  return out;
+}
+
+}  // namespace
+
+const Scalar* measured_viscosity(const Results& results) {
+  for (const Scalar& scalar : results.scalars)
+    if (scalar.name.ends_with(".viscosity")) return &scalar;
+  return nullptr;
+}
+
+template <int D>
+std::string fluid_text(const Scene<D>& scene, const Results& results) {
+  const SceneSettings<D>& settings = scene.settings();
+  const KineticTheory k = kinetic_theory<D>(settings.fluid, density_of(scene), settings.mass);
+  std::string out = "Fluid\n" + line("state", state_values(scene));
+  out += line("DPD parameters", dpd_values(settings.fluid));
+  if (settings.physical_inputs.any())
+    out += line("asked for", asked_values(settings.physical_inputs));
+  out += line("kinetic theory", kinetic_values(k));
+  const Scalar* measured = measured_viscosity(results);
+  out += fmt::format(
+      "  {:<15} {}\n", "measured",
+      measured ? fmt::format("eta = {} ({})", with_error(measured->mean, measured->standard_error),
+                             measured->name)
+               : "eta: not in this run");
+  return out + limits(scene);
+}
+
+template <int D>
+JsonObject fluid_json(const Scene<D>& scene, const Results& results) {
+  const SceneSettings<D>& settings = scene.settings();
+  const KineticTheory k = kinetic_theory<D>(settings.fluid, density_of(scene), settings.mass);
+  JsonObject json;
+  json.set("state", json_of(state_values(scene)));
+  json.set("dpd", json_of(dpd_values(settings.fluid)));
+  json.set("asked_for", json_of(asked_values(settings.physical_inputs)));
+  json.set("kinetic_theory", json_of(kinetic_values(k)));
+  const Scalar* measured = measured_viscosity(results);
+  if (!measured) return json.set("viscosity_measured", std::numeric_limits<double>::quiet_NaN());
+  return json.set("viscosity_measured", JsonObject()
+                                            .set("observable", measured->name)
+                                            .set("mean", measured->mean)
+                                            .set("stderr", measured->standard_error));
+}
+
+template std::string fluid_text<2>(const Scene<2>&, const Results&);
+template std::string fluid_text<3>(const Scene<3>&, const Results&);
+template JsonObject fluid_json<2>(const Scene<2>&, const Results&);
+template JsonObject fluid_json<3>(const Scene<3>&, const Results&);
+
+}  // namespace odpd

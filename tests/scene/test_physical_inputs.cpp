@@ -1,0 +1,256 @@
+// The formulas of physical inputs against integrals done by quadrature, their inverses, and the numbers printed in
+// Nguyen 2021, chapter 3. Water there: kappa^-1 = 15.98.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "cases.h"
+#include "odpd/scene/physical_keys.h"
+#include "support/dimensions.h"
+#include "support/errors.h"
+
+namespace {
+
+using odpd::dpd_parameters;
+using odpd::DpdParameters;
+using odpd::kinetic_theory;
+using odpd::KineticTheory;
+using odpd::PhysicalInputError;
+using odpd::PhysicalInputs;
+using support::expect_error;
+
+constexpr double water = 15.98;
+
+DpdParameters with_cutoff(double cutoff, double kT = 1.0) {
+  DpdParameters p;
+  p.cutoff = cutoff;
+  p.kT = kT;
+  return p;
+}
+
+PhysicalInputs like_water(double eta, double alpha) {
+  PhysicalInputs in;
+  in.eta = eta;
+  in.alpha = alpha;
+  in.kappa_inverse = water;
+  return in;
+}
+
+// The integral over d-dimensional space of f(R) up to `cutoff`, by the midpoint rule in (1 - R/r_c)^(1/2).
+template <int D>
+double integral(double cutoff, const std::function<double(double)>& f) {
+  const int steps = 20000;
+  double sum = 0.0;
+  for (int k = 0; k < steps; ++k) {
+    const double t = (k + 0.5) / steps, r = cutoff * (1.0 - t * t);
+    sum += f(r) * 2.0 * (D - 1) * std::numbers::pi * std::pow(r, D - 1) * 2.0 * cutoff * t / steps;
+  }
+  return sum;
+}
+
+template <class Dimension>
+class PhysicalInputsIn : public ::testing::Test {};
+TYPED_TEST_SUITE(PhysicalInputsIn, support::Dimensions);
+
+TYPED_TEST(PhysicalInputsIn, KineticTheoryIsItsIntegrals) {
+  constexpr int D = TypeParam::D;
+  const double n = 5.0, m = 0.3, kT = 1.7;
+  DpdParameters p = with_cutoff(1.2, kT);
+  p.a = 25.0;
+  p.s_bar = 1.6;
+  p.gamma = 3.0;
+  p.s = 0.8;
+  const auto w_c = [&](double r) { return std::pow(1.0 - r / p.cutoff, p.s_bar); };
+  const auto w_d = [&](double r) { return std::pow(1.0 - r / p.cutoff, p.s); };
+  const double virial = integral<D>(p.cutoff, [&](double r) { return r * p.a * w_c(r); });
+  const double friction = integral<D>(p.cutoff, [&](double r) { return r * r * p.gamma * w_d(r); });
+  const double drag = integral<D>(p.cutoff, [&](double r) { return p.gamma * w_d(r); });
+  const KineticTheory k = kinetic_theory<D>(p, n, m);
+  EXPECT_NEAR(k.pressure, n * kT + n * n * virial / (2.0 * D), 1e-6 * k.pressure);
+  EXPECT_NEAR(k.kappa_inverse, 1.0 + n * virial / (D * kT), 1e-6 * k.kappa_inverse);
+  EXPECT_NEAR(k.eta_friction, n * n * friction / (2.0 * D * (D + 2)), 1e-6 * k.eta_friction);
+  EXPECT_NEAR(k.diffusion, D * kT / (n * drag), 1e-6 * k.diffusion);
+  EXPECT_NEAR(k.eta_kinetic, 0.5 * n * m * k.diffusion, 1e-12);
+  EXPECT_NEAR(k.Sc, k.eta() / (n * m * k.diffusion), 1e-9 * k.Sc);
+  EXPECT_NEAR(k.alpha, p.gamma * p.gamma * p.cutoff / (m * p.a), 1e-12 * k.alpha);
+  EXPECT_NEAR(k.speed_of_sound * k.speed_of_sound * m, k.kappa_inverse * kT, 1e-9);
+  EXPECT_NEAR(k.bulk_modulus, n * kT * k.kappa_inverse, 1e-9);
+  EXPECT_EQ(k.rho, n * m);
+}
+
+// What is asked for comes back, also near the ends of the allowed ranges.
+TYPED_TEST(PhysicalInputsIn, TheReverseGivesWhatWasAskedFor) {
+  constexpr int D = TypeParam::D;
+  const double n = 6.0, m = 0.7;
+  for (const double Sc : {1600.0, 1e4, 1e6})
+    for (const double kappa_inverse : {1.001, 2.0, 15.98, 60.0}) {
+      PhysicalInputs in = like_water(20.0, 0.8);
+      in.Sc = Sc;
+      in.kappa_inverse = kappa_inverse;
+      const DpdParameters p = dpd_parameters<D>(in, with_cutoff(1.3, 0.9), n, m);
+      const KineticTheory k = kinetic_theory<D>(p, n, m);
+      EXPECT_GT(p.s, 0.0);
+      EXPECT_GT(p.s_bar, 0.0);
+      EXPECT_NEAR(k.eta_friction, 20.0, 1e-9);
+      EXPECT_NEAR(k.alpha, 0.8, 1e-9);
+      EXPECT_NEAR(k.kappa_inverse, kappa_inverse, 1e-9 * kappa_inverse);
+      // (3.12) takes the friction for the whole viscosity; the kinetic part rho D/2 adds 1/2.
+      EXPECT_NEAR(k.Sc, Sc + 0.5, 1e-9 * Sc);
+    }
+}
+
+// s_bar and s go to 0 at the conditions (3.16), (3.20) and C = (d + 1)!, and are refused beyond.
+TYPED_TEST(PhysicalInputsIn, ConditionsAreThoseOfThePositiveExponents) {
+  constexpr int D = TypeParam::D;
+  const double n = 4.0, m = 0.5, eta = 12.0;
+  const double smallest_Sc = (D < 3 ? 16.0 : 50.0 / 3.0) * eta * eta / (m * n * n);
+  PhysicalInputs in;
+  in.eta = eta;
+  in.Sc = smallest_Sc * (1.0 + 1e-9);
+  EXPECT_NEAR(dpd_parameters<D>(in, with_cutoff(1.0), n, m).s, 0.0, 1e-8);
+  in.Sc = smallest_Sc * (1.0 - 1e-9);
+  expect_error<PhysicalInputError>([&] { dpd_parameters<D>(in, with_cutoff(1.0), n, m); },
+                                   {"Sc", "too small", "3.16", "3.20"});
+  in = like_water(eta, 1.0);
+  const double a = dpd_parameters<D>(in, with_cutoff(1.0), n, m).a;
+  // C = 2 pi a n/(kappa^-1 - 1) > 6 in 2D, 8 pi a n/(kappa^-1 - 1) > 24 in 3D.
+  const double largest = 1.0 + (D < 3 ? 2.0 / 6.0 : 8.0 / 24.0) * std::numbers::pi * a * n;
+  in.kappa_inverse = largest * (1.0 - 1e-9);
+  EXPECT_NEAR(dpd_parameters<D>(in, with_cutoff(1.0), n, m).s_bar, 0.0, 1e-8);
+  in.kappa_inverse = largest * (1.0 + 1e-9);
+  expect_error<PhysicalInputError>([&] { dpd_parameters<D>(in, with_cutoff(1.0), n, m); },
+                                   {"kappa_inverse", "too stiff", "C = ", "3.6"});
+}
+
+TYPED_TEST(PhysicalInputsIn, RefusesWhatTheFormulasCannotGive) {
+  constexpr int D = TypeParam::D;
+  const auto refuse = [](const PhysicalInputs& in, double kT, double mass,
+                         std::initializer_list<const char*> parts) {
+    expect_error<PhysicalInputError>(
+        [&] { dpd_parameters<D>(in, with_cutoff(1.0, kT), 4.0, mass); }, parts);
+  };
+  PhysicalInputs in = like_water(30.0, 1.0);
+  refuse(in, 1.0, 0.0, {"alpha", "diverges at mass = 0"});
+  refuse(in, 0.0, 1.0, {"kappa_inverse", "kT"});
+  in.kappa_inverse = 1.0;
+  refuse(in, 1.0, 1.0, {"kappa_inverse", "larger than 1"});
+  in = {};
+  in.alpha = 1.0;
+  refuse(in, 1.0, 1.0, {"eta", "begin with the viscosity"});
+  in.eta = -3.0;
+  refuse(in, 1.0, 1.0, {"eta", "positive"});
+  in = {};
+  in.eta = 1.0;
+  in.Sc = 1e6;
+  refuse(in, 1.0, 0.0, {"Sc", "infinite at mass = 0"});
+  refuse(in, 0.0, 1.0, {"Sc", "kT = 0"});
+}
+
+TYPED_TEST(PhysicalInputsIn, WithoutMassEtaAndCompressibilityStillSetTheFluid) {
+  constexpr int D = TypeParam::D;
+  PhysicalInputs in;
+  in.eta = 7.0;
+  in.kappa_inverse = 20.0;
+  in.keep_s_bar = true;
+  DpdParameters base = with_cutoff(1.0);
+  base.s_bar = 1.5;
+  const DpdParameters p = dpd_parameters<D>(in, base, 4.0, 0.0);
+  EXPECT_EQ(p.s_bar, 1.5);
+  EXPECT_EQ(p.s, 0.5);
+  const KineticTheory k = kinetic_theory<D>(p, 4.0, 0.0);
+  EXPECT_NEAR(k.eta(), 7.0, 1e-12);
+  EXPECT_NEAR(k.kappa_inverse, 20.0, 1e-12);
+  EXPECT_TRUE(std::isinf(k.Sc) && std::isinf(k.alpha) && std::isinf(k.speed_of_sound));
+  // The other way round: s_bar of that repulsion.
+  in.keep_s_bar = false;
+  base.a = p.a;
+  EXPECT_NEAR(dpd_parameters<D>(in, base, 4.0, 0.0).s_bar, 1.5, 1e-10);
+}
+
+TEST(PhysicalInputs, MeanFieldOfTheStandardFluid) {
+  // w_C = 1 - r: p = n kT + (pi/24 in 2D, pi/30 in 3D) a n^2.
+  DpdParameters p;
+  p.a = 18.5;
+  EXPECT_NEAR(kinetic_theory<2>(p, 4.0, 0.0).pressure, 4.0 + std::numbers::pi / 24 * 18.5 * 16,
+              1e-10);
+  EXPECT_NEAR(kinetic_theory<3>(p, 4.0, 0.0).pressure, 4.0 + std::numbers::pi / 30 * 18.5 * 16,
+              1e-10);
+  // Groot & Warren 1997: D = 45 kT/(2 pi gamma n r_c^3) and eta = 2 pi gamma n^2 r_c^5/1575 + rho D/2 for s = 2.
+  p.s = 2.0;
+  const KineticTheory k = kinetic_theory<3>(p, 3.0, 1.0);
+  EXPECT_NEAR(k.diffusion, 45.0 / (2.0 * std::numbers::pi * 4.5 * 3.0), 1e-12);
+  EXPECT_NEAR(k.eta_friction, 2.0 * std::numbers::pi * 4.5 * 9.0 / 1575.0, 1e-12);
+}
+
+TEST(PhysicalInputs, ThesisTable31) {
+  const DpdParameters p = dpd_parameters<2>(like_water(100.0, 10.0), with_cutoff(1.6), 10.0, 0.01);
+  EXPECT_NEAR(p.gamma, 3.825, 5e-4);
+  EXPECT_NEAR(p.a, 234.1, 0.05);
+  EXPECT_NEAR(p.s_bar, 13.9, 0.05);
+  EXPECT_EQ(p.s, 0.5);
+}
+
+TEST(PhysicalInputs, ThesisFigure36) {
+  const DpdParameters p = dpd_parameters<2>(like_water(100.0, 1.0), with_cutoff(2.0), 8.0, 0.5);
+  EXPECT_NEAR(p.a, 23.96, 0.0101);  // 23.9696, which the thesis cuts after two decimals
+  EXPECT_NEAR(p.s_bar, 6.67, 5e-3);
+}
+
+// Section 3.1: "from the kinetic theory, the Schmidt number is estimated as 290, 319 and 365".
+TEST(PhysicalInputs, ThesisSchmidtNumbersOfThreeLevels) {
+  const struct {
+    double n, m, cutoff, Sc;
+  } levels[] = {{8.0, 1.0, 1.0, 290.0}, {6.0, 4.0 / 3.0, 1.1006, 319.0}, {4.0, 2.0, 1.2599, 365.0}};
+  for (const auto& level : levels) {
+    const DpdParameters p =
+        dpd_parameters<3>(like_water(30.0, 1.0), with_cutoff(level.cutoff), level.n, level.m);
+    const KineticTheory k = kinetic_theory<3>(p, level.n, level.m);
+    EXPECT_NEAR(k.eta_friction / (k.rho * k.diffusion), level.Sc, 0.5);
+    EXPECT_NEAR(k.kappa_inverse, water, 1e-9);
+  }
+}
+
+TEST(PhysicalInputs, RhoIsDensityTimesMass) {
+  const auto fluid = [](const std::string& text) {
+    return odpd::Config::from_text("[fluid]\n" + text, "case.toml").table("fluid");
+  };
+  EXPECT_DOUBLE_EQ(odpd::density_of_rho(fluid("rho = 8.0\nmass = 2.0\n")), 4.0);
+  EXPECT_DOUBLE_EQ(odpd::mass_of_rho(fluid("rho = 8.0\n"), 4.0), 2.0);
+  expect_error<odpd::ConfigError>([&] { odpd::density_of_rho(fluid("rho = 8.0\n")); },
+                                  {"fluid.rho", "two of"});
+  expect_error<odpd::ConfigError>([&] { odpd::density_of_rho(fluid("rho = 8.0\nmass = 0.0\n")); },
+                                  {"fluid.rho", "mass = 0"});
+  expect_error<odpd::ConfigError>([&] { odpd::mass_of_rho(fluid("rho = 8.0\nmass = 1.0\n"), 4.0); },
+                                  {"fluid.rho", "never three"});
+}
+
+// Figure 3.4: sigma = 3, a = 3.5320 is alpha = 8.5997, eta = 16.9721, Sc = 164.52 by kinetic theory.
+TEST(PhysicalInputs, ThesisStandardFluidReadBackwards) {
+  DpdParameters p = with_cutoff(1.5);
+  p.a = 3.5320;
+  const KineticTheory k = kinetic_theory<3>(p, 4.0, 1.0);
+  EXPECT_NEAR(k.alpha, 8.5997, 3e-4);  // as far as the digits of a go
+  EXPECT_NEAR(k.eta(), 16.9721, 5e-5);
+  EXPECT_NEAR(k.Sc, 164.52, 0.01);  // 164.529, cut
+  // It is water: the thesis chose a so. (3.37) is the same kinetic part.
+  EXPECT_NEAR(k.kappa_inverse, water, 2e-3);
+  EXPECT_NEAR(k.eta_kinetic, 0.6 * 4.0 * 4.0 * 2.25 / (k.eta_friction * 4.5 * 5.5), 1e-12);
+}
+
+// Levels of one fluid by evaluating the formulas at another n, r_c and m; (3.22) would change eta (3.36).
+TEST(PhysicalInputs, LevelsKeepViscosityAndCompressibility) {
+  const double levels[][3] = {{8.0, 1.0, 1.0}, {6.0, 4.0 / 3.0, 4.0 / 3.0}, {4.0, 2.0, 2.0}};
+  for (const auto& [n, cutoff, mass] : levels) {
+    const DpdParameters p = dpd_parameters<2>(like_water(30.0, 1.0), with_cutoff(cutoff), n, mass);
+    const KineticTheory k = kinetic_theory<2>(p, n, mass);
+    EXPECT_NEAR(k.eta_friction, 30.0, 1e-10);
+    EXPECT_NEAR(k.kappa_inverse, water, 1e-9);
+    EXPECT_NEAR(k.alpha, 1.0, 1e-12);
+    EXPECT_NEAR(k.rho, 8.0, 1e-12);
+    EXPECT_LT(k.eta_kinetic, 0.01 * k.eta_friction);
+  }
+}
+
+}  // namespace
