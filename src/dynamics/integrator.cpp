@@ -109,7 +109,7 @@ IntegratorSettings read_integrator(const Config& config) {
     if (order > 2) config.fail("order", "must be 1 or 2");
     settings.order = static_cast<int>(order);
   }
-  if (settings.name == "monte-carlo" && config.has("step")) settings.step = config.positive("step");
+  if (settings.name == "monte-carlo") settings.step = config.positive("step", settings.step);
   return settings;
 }
 
