@@ -75,7 +75,9 @@ std::string sampling_text(Simulation<D>& simulation) {
 
 template <int D>
 std::string dry_run_text(Simulation<D>& simulation) {
-  if (!simulation.integrator().in_time()) return sampling_text(simulation) + modelled(simulation);
+  const std::string fluid = "\n" + fluid_text(simulation.scene(), Results{});
+  if (!simulation.integrator().in_time())
+    return sampling_text(simulation) + modelled(simulation) + fluid;
   Dynamics<D>& dynamics = simulation.dynamics();
   const Clock& clock = simulation.clock();
   const Particles<D>& particles = simulation.scene().particles();
@@ -113,7 +115,7 @@ std::string dry_run_text(Simulation<D>& simulation) {
       stage_seconds * std::max(simulation.integrator().solves(), 1) *
           static_cast<double>(clock.total_steps),
       1e3 * stage_seconds, threads());
-  return out + modelled(simulation) + "\n" + fluid_text(simulation.scene(), Results{});
+  return out + modelled(simulation) + fluid;
 }
 
 template std::string dry_run_text<2>(Simulation<2>&);

@@ -172,8 +172,7 @@ std::string report_text(const Simulation<D>& simulation, const Results& results,
       simulation.scene().particles().size() - free_particles(simulation), settings.integrator.name,
       clock.dt, clock.step, clock.time(), clock.finished() ? "" : ", interrupted");
   out += method_text(simulation);
-  out += "
-" + fluid_text(simulation.scene(), results);
+  out += "\n" + fluid_text(simulation.scene(), results);
   out += "\nMeasured (standard error by block averaging)\n";
   for (const Scalar& scalar : results.scalars)
     out +=
