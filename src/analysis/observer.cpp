@@ -10,6 +10,7 @@
 #include "odpd/analysis/rdf.h"
 #include "odpd/analysis/thermo.h"
 #include "odpd/analysis/wall_force.h"
+#include "odpd/core/log.h"
 
 namespace odpd {
 
@@ -179,8 +180,8 @@ std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::strin
 
 template <int D>
 std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
-                                                         const Scene<D>& scene,
-                                                         const Clock& clock) {
+                                                         const Scene<D>& scene, const Clock& clock,
+                                                         bool steps_are_time) {
   const std::vector<std::string> kinds{"thermo", "profile", "density-residual",
                                        "rdf",    "msd",     "wall-force"};
   std::vector<std::unique_ptr<Observer<D>>> observers;
@@ -199,16 +200,24 @@ std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
       if (observers[k]->settings().name == observers.back()->settings().name)
         entry.fail("name", fmt::format("two observers are named '{}': give each a name of its own",
                                        observers[k]->settings().name));
+    if (newest.kind == "msd" && !steps_are_time) {
+      log_warning(
+          fmt::format("observer '{}' is left out: sweeps of monte-carlo are no time, so "
+                      "displacements give no diffusion",
+                      newest.name));
+      observers.pop_back();
+    }
   }
   const Config nothing = Config::from_text("", "defaults");
-  for (const char* kind : {"thermo", "msd"})
-    if (!have(kind)) observers.push_back(make_observer(nothing, kind, scene, clock));
+  for (const std::string kind : {"thermo", "msd"})
+    if (!have(kind) && (steps_are_time || kind != "msd"))
+      observers.push_back(make_observer(nothing, kind, scene, clock));
   return observers;
 }
 
 template std::vector<std::unique_ptr<Observer<2>>> make_observers<2>(const Config&, const Scene<2>&,
-                                                                     const Clock&);
+                                                                     const Clock&, bool);
 template std::vector<std::unique_ptr<Observer<3>>> make_observers<3>(const Config&, const Scene<3>&,
-                                                                     const Clock&);
+                                                                     const Clock&, bool);
 
 }  // namespace odpd

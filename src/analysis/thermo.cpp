@@ -1,5 +1,7 @@
 #include "odpd/analysis/thermo.h"
 
+#include <cmath>
+
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
 
@@ -27,6 +29,7 @@ double kinetic_temperature(const Scene<D>& scene, const Particles<D>& particles,
                            const std::vector<Vec<D>>& velocity) {
   const double mass = scene.settings().mass;
   if (mass == 0.0) return 0.0;
+  if (velocity.empty()) return std::nan("");  // Monte Carlo has no velocities
   const auto n = static_cast<double>(particles.free_count());
   const bool conserved = scene.conserves_momentum();
   Vec<D> mean{};

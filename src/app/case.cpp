@@ -182,7 +182,8 @@ CaseSettings read_case(const Config& config, const std::string& name) {
   c.dynamics.seed = static_cast<std::uint64_t>(config.integer("seed", 1));
   const Config integrator = config.table("integrator");
   c.integrator = read_integrator(integrator);
-  c.clock.dt = integrator.positive("dt");
+  c.clock.dt = c.integrator.name == "monte-carlo" ? integrator.positive("dt", 1.0)
+                                                  : integrator.positive("dt");
   c.solver = read_solver(config.table("solver"), c.dynamics.hold_centre_of_mass);
   const Config neighbours = config.table("neighbours");
   c.dynamics.skin = neighbours.non_negative("skin", c.dynamics.skin);

@@ -11,27 +11,22 @@ namespace odpd {
 
 namespace {
 
+std::string line(bool yes, const char* what, const std::string& why) {
+  return fmt::format("  {} {:<22} {}\n", yes ? "+" : "-", what, why);
+}
+
+// Of a scheme that moves the particles in time.
 template <int D>
-std::string modelled(const Simulation<D>& simulation) {
+std::string modelled_motion(const Simulation<D>& simulation) {
   const Scene<D>& scene = simulation.scene();
-  const auto line = [](bool yes, const char* what, const std::string& why) {
-    return fmt::format("  {} {:<22} {}\n", yes ? "+" : "-", what, why);
-  };
-  std::string out = "Modelled (+) and left out (-)\n";
-  out += line(scene.model().conservative(), "conservative force",
-              scene.model().conservative() ? "a > 0" : "a = 0");
-  out +=
-      line(scene.model().thermal(), "random force", scene.model().thermal() ? "kT > 0" : "kT = 0");
+  const bool thermal = scene.model().thermal();
+  std::string out = line(thermal, "random force", thermal ? "kT > 0" : "kT = 0");
   const double mass = scene.settings().mass;
   out += line(
       mass > 0.0, "inertia",
       mass > 0.0 ? fmt::format("mass = {}", mass) : "mass = 0: every step is a balance of forces");
   out += line(scene.settings().zeta_0 > 0.0, "uniform drag",
               scene.settings().zeta_0 > 0.0 ? "zeta_0 > 0, with its noise" : "none given");
-  out += line(!scene.settings().walls.empty(), "walls",
-              fmt::format("{} [[wall]]", scene.settings().walls.size()));
-  const Vec<D>& f = scene.settings().body_force;
-  out += line(dot(f, f) > 0.0, "body force", dot(f, f) > 0.0 ? "[body_force]" : "none given");
   const int solves = simulation.integrator().solves();
   out += line(solves > 0, "solves per step",
               fmt::format("{}, integrator {}", solves, simulation.integrator().name()));
@@ -41,10 +36,48 @@ std::string modelled(const Simulation<D>& simulation) {
   return out;
 }
 
+template <int D>
+std::string modelled(const Simulation<D>& simulation) {
+  const Scene<D>& scene = simulation.scene();
+  std::string out = "Modelled (+) and left out (-)\n";
+  out += line(scene.model().conservative(), "conservative force",
+              scene.model().conservative() ? "a > 0" : "a = 0");
+  if (!simulation.integrator().in_time()) {
+    out += line(false, "motion in time", "monte-carlo samples equilibrium by trial moves");
+  } else {
+    out += modelled_motion(simulation);
+  }
+  out += line(!scene.settings().walls.empty(), "walls",
+              fmt::format("{} [[wall]]", scene.settings().walls.size()));
+  const Vec<D>& f = scene.settings().body_force;
+  out += line(dot(f, f) > 0.0, "body force", dot(f, f) > 0.0 ? "[body_force]" : "none given");
+  return out;
+}
+
+// One sweep is tried on the scene that nobody will go on with.
+template <int D>
+std::string sampling_text(Simulation<D>& simulation) {
+  const Clock clock = simulation.clock();
+  const Stopwatch watch;
+  simulation.step();
+  const double seconds = watch.seconds();
+  const Particles<D>& particles = simulation.scene().particles();
+  const std::int64_t free = particles.free_count();
+  return fmt::format(
+      "{}\n  {}D, {} free particles, {} of known velocity\n"
+      "  {} sweeps ({} of them equilibration), about {:.3g} s at {:.3g} ms per sweep (measured "
+      "once)\n\n",
+      simulation.settings().title, D, free, particles.size() - free, clock.total_steps,
+      clock.equilibration_steps, seconds * static_cast<double>(clock.total_steps), 1e3 * seconds);
+}
+
 }  // namespace
 
 template <int D>
 std::string dry_run_text(Simulation<D>& simulation) {
+  const std::string fluid = "\n" + fluid_text(simulation.scene(), Results{});
+  if (!simulation.integrator().in_time())
+    return sampling_text(simulation) + modelled(simulation) + fluid;
   Dynamics<D>& dynamics = simulation.dynamics();
   const Clock& clock = simulation.clock();
   const Particles<D>& particles = simulation.scene().particles();
@@ -82,7 +115,7 @@ std::string dry_run_text(Simulation<D>& simulation) {
       stage_seconds * std::max(simulation.integrator().solves(), 1) *
           static_cast<double>(clock.total_steps),
       1e3 * stage_seconds, threads());
-  return out + modelled(simulation) + "\n" + fluid_text(simulation.scene(), Results{});
+  return out + modelled(simulation) + fluid;
 }
 
 template std::string dry_run_text<2>(Simulation<2>&);

@@ -38,16 +38,17 @@ void LiveLine<D>::update() {
   drawn_ = true;
   const SolverStatistics& s = simulation_.dynamics().statistics();
   const double speed = static_cast<double>(clock.step - first_step_) / std::max(seconds, 1e-9);
-  const double iterations =
-      static_cast<double>(s.iterations - first_iterations_) /
-      static_cast<double>(std::max<std::int64_t>(s.solves - first_solves_, 1));
-  fmt::print(
-      stderr,
-      "{}step {}/{}  t = {:.4g}{}  {:.0f} steps/s  {:.0f} s to go  {:.1f} iterations/solve{}",
-      terminal_ ? "\r" : "", clock.step, clock.total_steps, clock.time(),
-      clock.measuring() ? "" : " (equilibrating)", speed,
-      static_cast<double>(clock.total_steps - clock.step) / speed, iterations,
-      terminal_ ? "   " : "\n");
+  const std::int64_t solves = s.solves - first_solves_;
+  const std::string iterations =
+      solves == 0 ? ""
+                  : fmt::format("  {:.1f} iterations/solve",
+                                static_cast<double>(s.iterations - first_iterations_) /
+                                    static_cast<double>(solves));
+  fmt::print(stderr, "{}step {}/{}  t = {:.4g}{}  {:.0f} steps/s  {:.0f} s to go{}{}",
+             terminal_ ? "\r" : "", clock.step, clock.total_steps, clock.time(),
+             clock.measuring() ? "" : " (equilibrating)", speed,
+             static_cast<double>(clock.total_steps - clock.step) / speed, iterations,
+             terminal_ ? "   " : "\n");
   std::fflush(stderr);
 }
 

@@ -50,6 +50,22 @@ JsonObject solver_json(const Simulation<D>& simulation) {
   return json;
 }
 
+// How the solves went, or what was done instead.
+template <int D>
+std::string method_text(const Simulation<D>& simulation) {
+  if (const std::string summary = simulation.integrator().summary(); !summary.empty())
+    return fmt::format("  {}\n", summary);
+  const SolverOptions& options = simulation.settings().solver;
+  const SolverStatistics& s = simulation.dynamics().statistics();
+  const auto solves = static_cast<double>(std::max<std::int64_t>(s.solves, 1));
+  std::string out = fmt::format(
+      "  solver {} to {:g}: {:.1f} iterations per solve (most {}), worst true residual {:.2g}\n",
+      options.name, options.tolerance, static_cast<double>(s.iterations) / solves,
+      s.most_iterations, s.worst_residual);
+  if (!s.problem.empty()) out += fmt::format("  problem solved: {}\n", s.problem);
+  return out;
+}
+
 std::vector<JsonObject> checks_json(const std::vector<CheckOutcome>& checks) {
   std::vector<JsonObject> list;
   for (const CheckOutcome& c : checks) {
@@ -122,6 +138,8 @@ std::string summary_json(const Simulation<D>& simulation, const Results& results
   json.set("case", settings.name).set("title", settings.title).set("version", ODPD_VERSION);
   json.set("dimension", D).set("seed", static_cast<std::int64_t>(settings.dynamics.seed));
   json.set("integrator", settings.integrator.name).set("dt", clock.dt);
+  if (const std::string summary = simulation.integrator().summary(); !summary.empty())
+    json.set("integrator_summary", summary);
   json.set("particles", simulation.scene().particles().size())
       .set("free_particles", free_particles(simulation));
   json.set("steps", clock.step)
@@ -147,19 +165,13 @@ std::string report_text(const Simulation<D>& simulation, const Results& results,
                         const std::vector<CheckOutcome>& checks) {
   const CaseSettings& settings = simulation.settings();
   const Clock& clock = simulation.clock();
-  const SolverStatistics& s = simulation.dynamics().statistics();
   std::string out = fmt::format("\n{}\n", settings.title);
   out += fmt::format(
       "  {}D, {} free particles and {} of known velocity; {} at dt = {}, {} steps (t = {:.6g}){}\n",
       D, free_particles(simulation),
       simulation.scene().particles().size() - free_particles(simulation), settings.integrator.name,
       clock.dt, clock.step, clock.time(), clock.finished() ? "" : ", interrupted");
-  out += fmt::format(
-      "  solver {} to {:g}: {:.1f} iterations per solve (most {}), worst true residual {:.2g}\n",
-      settings.solver.name, settings.solver.tolerance,
-      static_cast<double>(s.iterations) / static_cast<double>(std::max<std::int64_t>(s.solves, 1)),
-      s.most_iterations, s.worst_residual);
-  if (!s.problem.empty()) out += fmt::format("  problem solved: {}\n", s.problem);
+  out += method_text(simulation);
   out += "\n" + fluid_text(simulation.scene(), results);
   out += "\nMeasured (standard error by block averaging)\n";
   for (const Scalar& scalar : results.scalars)

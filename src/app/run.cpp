@@ -76,7 +76,7 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
   if (const std::string warning = simulation.integrator().warning(); !warning.empty())
     log_warning(warning);
   if (const double limit = longest_sensible_step(simulation.scene().settings());
-      settings.clock.dt > limit)
+      simulation.integrator().in_time() && settings.clock.dt > limit)
     log_warning(
         fmt::format("integrator.dt = {} is beyond 0.4 gamma/a = {:.3g}, where the explicit "
                     "repulsion is no longer "

@@ -56,11 +56,12 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings)
       dynamics_(scene_.box(), scene_.particles(), scene_.model(), scene_,
                 make_solver(settings_.solver), dynamics_of(settings_.dynamics, scene_)),
       integrator_(make_integrator<D>(settings_.integrator)),
-      observers_(make_observers(config, scene_, clock_)) {
+      observers_(make_observers(config, scene_, clock_, integrator_->in_time())) {
   if (const std::string why = mass_objection(settings_.integrator.name, scene_.settings().mass);
       !why.empty())
     config.table("integrator").fail("name", why);
   config.reject_unread();
+  integrator_->check(dynamics_);
   check_observables(config);
 }
 
@@ -96,6 +97,10 @@ const StepRecord<D>& Simulation<D>::named_step() {
 
 template <int D>
 const StepRecord<D>& Simulation<D>::step() {
+  const auto due = [this](const auto& observer) { return observer->is_due(clock_); };
+  clock_.advance();
+  clock_.sampled = std::any_of(observers_.begin(), observers_.end(), due);
+  --clock_.step;
   const StepRecord<D>& record = named_step();
   clock_.advance();
   if (record.alarm_crossings > 0 && !alarmed_) {

@@ -11,6 +11,7 @@
 #include "odpd/dynamics/extrapolated.h"
 #include "odpd/dynamics/implicit.h"
 #include "odpd/dynamics/midpoint.h"
+#include "odpd/dynamics/monte_carlo.h"
 #include "odpd/dynamics/setd.h"
 #include "odpd/dynamics/shardlow.h"
 #include "odpd/dynamics/trapezoidal.h"
@@ -26,14 +27,15 @@ struct Entry {
   Masses masses;
 };
 // Every integrator there is; `make_integrator` below makes them.
-constexpr std::array<Entry, 8> table{{{"trapezoidal", Masses::any},
+constexpr std::array<Entry, 9> table{{{"trapezoidal", Masses::any},
                                       {"midpoint", Masses::any},
                                       {"extrapolated", Masses::any},
                                       {"implicit", Masses::any},
                                       {"euler", Masses::zero},
                                       {"setd", Masses::positive},
                                       {"velocity-verlet", Masses::positive},
-                                      {"shardlow", Masses::positive}}};
+                                      {"shardlow", Masses::positive},
+                                      {"monte-carlo", Masses::any}}};
 
 }  // namespace
 
@@ -107,6 +109,7 @@ IntegratorSettings read_integrator(const Config& config) {
     if (order > 2) config.fail("order", "must be 1 or 2");
     settings.order = static_cast<int>(order);
   }
+  if (settings.name == "monte-carlo") settings.step = config.positive("step", settings.step);
   return settings;
 }
 
@@ -136,6 +139,7 @@ std::unique_ptr<Integrator<D>> make_integrator(const IntegratorSettings& setting
   if (name == "setd") return std::make_unique<Setd<D>>(settings.order);
   if (name == "velocity-verlet") return std::make_unique<VelocityVerlet<D>>(settings.lambda);
   if (name == "shardlow") return std::make_unique<Shardlow<D>>();
+  if (name == "monte-carlo") return std::make_unique<MonteCarlo<D>>(settings.step);
   throw ConfigError(fmt::format("there is no integrator '{}': use one of {}", name,
                                 fmt::join(integrator_names(), ", ")));
 }

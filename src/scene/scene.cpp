@@ -42,14 +42,27 @@ void Scene<D>::add_potential_forces(const Particles<D>& particles,
 }
 
 template <int D>
+double Scene<D>::wall_energy(const WallSettings<D>& wall, const Vec<D>& r) const {
+  const double h = depth_behind(wall, r);
+  return h > 0.0 ? 0.5 * wall.stiffness * h * h : 0.0;
+}
+
+template <int D>
+double Scene<D>::potential_energy_at(const Vec<D>& r) const {
+  double energy = 0.0;
+  for (const auto& wall : settings_.walls) energy += wall_energy(wall, r);
+  return energy;
+}
+
+template <int D>
 double Scene<D>::potential_energy(const Particles<D>& particles, std::span<const Vec<D>> positions,
                                   std::vector<double>& laplacian) const {
   double energy = 0.0;
   for (const auto& wall : settings_.walls)
     for (std::size_t i = 0; i < positions.size(); ++i) {
-      const double h = particles.is_free(i) ? depth_behind(wall, positions[i]) : 0.0;
-      if (!(h > 0.0)) continue;
-      energy += 0.5 * wall.stiffness * h * h;
+      const double u = particles.is_free(i) ? wall_energy(wall, positions[i]) : 0.0;
+      if (!(u > 0.0)) continue;
+      energy += u;
       laplacian[i] += wall.stiffness;
     }
   return energy;

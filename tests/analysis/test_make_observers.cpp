@@ -42,6 +42,16 @@ TEST_F(MakeObservers, ThermoAndMsdAreAlwaysThere) {
   EXPECT_TRUE(own[0]->settings().series);
 }
 
+TEST_F(MakeObservers, WithoutTimeThereIsNoMsd) {
+  for (const char* text : {"", "[[observe]]\nkind = \"msd\"\nwindow = 2.0\n"}) {
+    const Config config = Config::from_text(text, "case.toml");
+    const auto observers = odpd::make_observers(config, scene, odpd::Clock{.dt = 1.0}, false);
+    config.reject_unread();
+    ASSERT_EQ(observers.size(), 1u);
+    EXPECT_EQ(observers[0]->settings().kind, "thermo");
+  }
+}
+
 TEST_F(MakeObservers, EveryKindCanBeMade) {
   std::string text;
   for (const char* kind : {"thermo", "profile", "density-residual", "rdf", "msd"}) {

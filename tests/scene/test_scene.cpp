@@ -92,6 +92,22 @@ TYPED_TEST(SceneTest, WallForcesAddUpInACorner) {
   EXPECT_NEAR(force.back()[D - 1], -700.0 * 0.1 * (D - 1), 1e-10);
 }
 
+// At random places, behind walls too, of one free particle; the other one rests between the walls.
+TYPED_TEST(SceneTest, TheEnergyAtAPlaceIsThatOfAParticleThere) {
+  constexpr int D = TypeParam::D;
+  const Scene<D> scene(duct<D>());
+  std::vector<Vec<D>> r = scene.particles().position;
+  std::vector<double> ignored(r.size());
+  double largest = 0.0;
+  for (const Vec<D>& trial : support::random_points<D>(Vec<D>{}, scene.box().size, 40, 5)) {
+    r.back() = trial;
+    const double energy = scene.potential_energy(scene.particles(), r, ignored);
+    EXPECT_NEAR(scene.potential_energy_at(trial), energy, 1e-12 * (1.0 + energy));
+    largest = std::max(largest, energy);
+  }
+  EXPECT_GT(largest, 1.0);
+}
+
 TYPED_TEST(SceneTest, TheBodyForceActsOnTheFluidOnly) {
   constexpr int D = TypeParam::D;
   const Scene<D> scene(duct<D>());

@@ -56,9 +56,11 @@ class Observer {
 };
 
 /// The observers of a case: its [[observe]] entries, and `thermo` and `msd` with their defaults when it names none of
-/// that kind. `scene` must outlive them. Throws ConfigError for unknown kinds and bad keys.
+/// that kind. Without `steps_are_time` (Monte Carlo) there is no `msd`: the default one is not made, a named one is left
+/// out with a warning. `scene` must outlive them. Throws ConfigError for unknown kinds and bad keys.
 template <int D>
 std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
-                                                         const Scene<D>& scene, const Clock& clock);
+                                                         const Scene<D>& scene, const Clock& clock,
+                                                         bool steps_are_time = true);
 
 }  // namespace odpd

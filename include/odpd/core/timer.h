@@ -6,7 +6,7 @@
 
 namespace odpd {
 
-enum class Phase { neighbours, edges, noise, assembly, solve, measure, write, count };
+enum class Phase { neighbours, edges, noise, assembly, solve, sweep, measure, write, count };
 
 /// Name of a phase in reports and files.
 std::string_view phase_name(Phase phase);

@@ -10,6 +10,7 @@
 //   setd             m > 0, no solve: stochastic exponential time differencing
 //   velocity-verlet  m > 0, no solve: Groot and Warren's modified velocity-Verlet
 //   shardlow         m > 0, no solve: exact pairwise splitting
+//   monte-carlo      no motion: samples the equilibrium of the scene's energy, the exact reference for the others
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,8 +30,14 @@ class Integrator {
   virtual std::string name() const = 0;
   /// Solves per step.
   virtual int solves() const = 0;
+  /// Steps are steps in time. Otherwise (Monte Carlo sweeps) there are no velocities, and only positions mean something.
+  virtual bool in_time() const { return true; }
+  /// Throws ConfigError when the scheme has no answer for this scene. To be called before the first step.
+  virtual void check(Dynamics<D>&) {}
   /// What a user must know before believing its results; empty when there is nothing.
   virtual std::string warning() const { return {}; }
+  /// What it did, for the report of a scheme that solves nothing.
+  virtual std::string summary() const { return {}; }
   /// One step of clock.dt from clock.step. The record stays valid until the next step.
   virtual const StepRecord<D>& step(Dynamics<D>& dynamics, const Clock& clock) = 0;
   /// Arrays carried from step to step (none for schemes that only know r and v).
@@ -61,6 +68,7 @@ struct IntegratorSettings {
   double lambda = 0.5;  ///< velocity-verlet: the velocity is predicted lambda dt ahead
   double theta = 0.5;   ///< implicit: weight of the end of the step
   int order = 1;        ///< setd: 1 or 2
+  double step = 0.0;  ///< monte-carlo: largest displacement per component at first; 0: 0.3 cutoffs
 };
 
 std::vector<std::string> integrator_names();

@@ -17,6 +17,8 @@ class Surroundings {
   virtual void add_potential_forces(const Particles<D>& particles,
                                     std::span<const Vec<D>> positions,
                                     std::vector<Vec<D>>& force) const = 0;
+  /// Energy of a free particle at r in these potentials.
+  virtual double potential_energy_at(const Vec<D>& r) const = 0;
   /// Energy of the potentials, and their Laplacian added per particle (for the configurational temperature).
   virtual double potential_energy(const Particles<D>& particles, std::span<const Vec<D>> positions,
                                   std::vector<double>& laplacian) const = 0;
@@ -35,6 +37,7 @@ class NoSurroundings : public Surroundings<D> {
  public:
   void add_potential_forces(const Particles<D>&, std::span<const Vec<D>>,
                             std::vector<Vec<D>>&) const override {}
+  double potential_energy_at(const Vec<D>&) const override { return 0.0; }
   double potential_energy(const Particles<D>&, std::span<const Vec<D>>,
                           std::vector<double>&) const override {
     return 0.0;

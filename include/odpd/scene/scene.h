@@ -33,6 +33,7 @@ class Scene : public Surroundings<D> {
 
   void add_potential_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
                             std::vector<Vec<D>>& force) const override;
+  double potential_energy_at(const Vec<D>& r) const override;
   double potential_energy(const Particles<D>& particles, std::span<const Vec<D>> positions,
                           std::vector<double>& laplacian) const override;
   void add_driving_forces(const Particles<D>& particles, double t,
@@ -41,6 +42,7 @@ class Scene : public Surroundings<D> {
   bool confine(Vec<D>& r) const override;
 
  private:
+  double wall_energy(const WallSettings<D>& wall, const Vec<D>& r) const;
   double depth_behind(const WallSettings<D>& wall, const Vec<D>& r) const;
 
   SceneSettings<D> settings_;

@@ -1,0 +1,151 @@
+#include "odpd/dynamics/monte_carlo.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "odpd/core/error.h"
+#include "odpd/core/random.h"
+
+namespace odpd {
+
+namespace {
+constexpr double wanted_acceptance = 0.4;
+constexpr std::int64_t trials_per_tuning = 1000;
+}  // namespace
+
+template <int D>
+void MonteCarlo<D>::refuse_driving(Dynamics<D>& dynamics, double time) {
+  const Particles<D>& particles = dynamics.particles();
+  const auto refuse = [](const std::string& what) {
+    throw ConfigError("integrator 'monte-carlo' samples equilibrium, and " + what +
+                      ", or use integrator.name = \"trapezoidal\"");
+  };
+  for (std::size_t i = 0; i < particles.position.size(); ++i)
+    if (!particles.is_free(i) &&
+        dynamics.surroundings().known_velocity(particles.group[i], time) != Vec<D>{})
+      refuse("a moving wall has none: set wall.velocity to zero");
+  force_.assign(particles.position.size(), Vec<D>{});
+  dynamics.surroundings().add_driving_forces(particles, time, force_);
+  for (int c = 0; c < D; ++c)
+    if (dynamics.box().is_periodic(c))
+      for (const Vec<D>& f : force_)
+        if (f[c] != 0.0)
+          refuse(fmt::format(
+              "a body force along {}, a periodic direction, has none: set that component of "
+              "body_force.force to zero",
+              "xyz"[c]));
+}
+
+template <int D>
+void MonteCarlo<D>::check(Dynamics<D>& dynamics) {
+  const double kT = dynamics.settings().kT;
+  if (!(kT > 0.0))
+    throw ConfigError(
+        "integrator 'monte-carlo' samples exp(-U/kT) and needs fluid.kT > 0: set it, or use "
+        "integrator.name = \"trapezoidal\"");
+  refuse_driving(dynamics, 0.0);
+  dynamics.evaluate(dynamics.particles().position, 0.0, record_.start);
+  for (const double pair_kT : record_.start.network.kT)
+    if (pair_kT != kT)
+      throw ConfigError(fmt::format(
+          "integrator 'monte-carlo' samples one temperature, but there are pairs of kT = {} and of "
+          "{}: give all the same, or use integrator.name = \"trapezoidal\"",
+          kT, pair_kT));
+  if (step_ == 0.0) step_ = 0.3 * dynamics.model().cutoff();
+  energy_ = std::make_unique<LocalEnergy<D>>(dynamics.box(), dynamics.model(),
+                                             dynamics.surroundings(), dynamics.particles());
+}
+
+template <int D>
+bool MonteCarlo<D>::try_move(Dynamics<D>& dynamics, std::size_t i, const std::array<double, 4>& u) {
+  const Box<D>& box = dynamics.box();
+  Particles<D>& particles = dynamics.particles();
+  Vec<D> r = particles.position[i];
+  auto image = particles.image[i];
+  for (int c = 0; c < D; ++c) {
+    r[c] += step_ * (2.0 * u[static_cast<std::size_t>(c)] - 1.0);
+    if (!box.is_periodic(c) && (r[c] < 0.0 || r[c] > box.size[c])) return false;
+  }
+  // A body force acts along bounded directions only, where nothing wraps.
+  const double work = dot(force_[i], r - particles.position[i]);
+  box.wrap(r, image);
+  const double change = energy_->at(i, r) - energy_->at(i, particles.position[i]) - work;
+  if (!(change <= 0.0 || u.back() < std::exp(-change / dynamics.settings().kT))) return false;
+  energy_->moved(i, r);
+  particles.position[i] = r;
+  particles.image[i] = image;
+  return true;
+}
+
+template <int D>
+void MonteCarlo<D>::sweep(Dynamics<D>& dynamics, std::int64_t step) {
+  const PhaseTimer timer(dynamics.phases(), Phase::sweep);
+  const Particles<D>& particles = dynamics.particles();
+  const CounterRandom random(dynamics.settings().seed, Stream::monte_carlo);
+  energy_->place();
+  for (const std::int32_t index : particles.index_of_id()) {
+    const auto i = static_cast<std::size_t>(index);
+    if (!particles.is_free(i)) continue;
+    const auto u = random.uniforms(static_cast<std::uint64_t>(step), 0,
+                                   static_cast<std::uint64_t>(particles.id[i]), 0);
+    ++trials_;
+    if (try_move(dynamics, i, u)) ++accepted_;
+  }
+}
+
+// Between 0.6 and 1.6 times the step, up to half the box: beyond it nothing is gained where moves are free.
+template <int D>
+void MonteCarlo<D>::tune(const Box<D>& box) {
+  step_ *= 1.0 + acceptance() - wanted_acceptance;
+  for (const double edge : box.size.x) step_ = std::min(step_, 0.5 * edge);
+  trials_ = accepted_ = 0;
+}
+
+template <int D>
+const StepRecord<D>& MonteCarlo<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
+  if (!energy_) check(dynamics);
+  record_.step = clock.step;
+  record_.dt = clock.dt;
+  dynamics.reorder_if_due(clock.step);
+  refuse_driving(dynamics, clock.time());
+  // As costly as the sweep itself, and of no consequence for it.
+  if (clock.sampled) dynamics.evaluate(dynamics.particles().position, clock.time(), record_.start);
+  record_.v_mid.assign(dynamics.particles().position.size(), Vec<D>{});
+  dynamics.particles().velocity = record_.v_mid;
+  sweep(dynamics, clock.step);
+  if (clock.step < clock.equilibration_steps && trials_ >= trials_per_tuning) tune(dynamics.box());
+  // The report tells the acceptance of the measured part.
+  if (clock.step + 1 == clock.equilibration_steps) trials_ = accepted_ = 0;
+  return record_;
+}
+
+template <int D>
+double MonteCarlo<D>::acceptance() const {
+  return static_cast<double>(accepted_) / static_cast<double>(std::max<std::int64_t>(trials_, 1));
+}
+
+template <int D>
+std::string MonteCarlo<D>::summary() const {
+  return fmt::format("trial moves of up to {:.4g} per component, {:.1f} % accepted", step_,
+                     100.0 * acceptance());
+}
+
+template <int D>
+void MonteCarlo<D>::save(StateWriter& out) const {
+  out.write("step", std::vector<double>{step_});
+  out.write("trials", std::vector<std::int64_t>{trials_, accepted_});
+}
+
+template <int D>
+void MonteCarlo<D>::load(const StateReader& in) {
+  step_ = in.read_doubles("step").at(0);
+  trials_ = in.read_integers("trials").at(0);
+  accepted_ = in.read_integers("trials").at(1);
+}
+
+template class MonteCarlo<2>;
+template class MonteCarlo<3>;
+
+}  // namespace odpd
