@@ -141,9 +141,11 @@ bool run_points(const StudyExecution& execution, StudyResults& results) {
   std::size_t total = 0;
   // Seeds outermost: an interrupted study has something of every point.
   for (std::size_t r = 0; r < static_cast<std::size_t>(study.seeds); ++r)
-    for (std::size_t p = 0; p < results.plan.points.size(); ++p, ++total) {
+    for (std::size_t p = 0; p < results.plan.points.size(); ++p) {
       const StudyPoint& point = results.plan.points[p];
       results.outcomes[p].resize(point.runs.size());
+      if (r >= point.runs.size()) continue;
+      ++total;
       results.outcomes[p][r] = earlier_outcome(execution, point.runs[r]);
       if (results.outcomes[p][r].status == RunStatus::missing) {
         due.push_back({p, r});

@@ -92,15 +92,15 @@ class Reader {
   const std::filesystem::path& directory_;
 };
 
-// The rms difference, and as its standard error the rms that noise alone would give.
+// The rms difference, and as its standard error the rms that noise alone would give; undefined where a row's is.
 Estimate rms_difference(const TableColumn& a, const TableColumn& b) {
   const std::size_t rows = std::min(a.y.size(), b.y.size());
   double square = 0.0, noise = 0.0;
   for (std::size_t k = 0; k < rows; ++k) {
     const double d = a.y[k].mean - b.y[k].mean;
     square += d * d;
-    for (const double e : {a.y[k].standard_error, b.y[k].standard_error})
-      noise += std::isfinite(e) ? e * e : 0.0;
+    for (const Estimate& e : {a.y[k], b.y[k]})
+      if (e.mean != 0.0) noise += e.standard_error * e.standard_error;  // an empty bin has none
   }
   if (rows == 0) return {nan, nan};
   return {std::sqrt(square / static_cast<double>(rows)),

@@ -114,16 +114,25 @@ StudyPicture accuracy_chart(const StudyResults& results, const StudyObservable& 
   return picture;
 }
 
-std::string cell_text(const Finding& f, bool relative) {
+// "+0.12 %": with two digits of the tolerance.
+std::string cell_text(const Finding& f, double tolerance, bool relative) {
   const double scale = relative ? 100.0 : 1.0;
   const char* unit = relative ? " %" : "";
+  const int decimals =
+      std::clamp(1 - static_cast<int>(std::floor(std::log10(tolerance * scale))), 0, 6);
+  const auto number = [&](double value, const char* sign) {
+    const int shown = std::abs(value) >= 99.5   ? 0
+                      : std::abs(value) >= 9.95 ? std::min(decimals, 1)
+                                                : decimals;
+    return fmt::format("{}{:.{}f}{}", sign, std::abs(value), shown, unit);
+  };
   if (f.verdict == Verdict::missing) return "";
   if (f.verdict == Verdict::blew_up)
     return std::isfinite(f.blew_up_at) ? fmt::format("t = {:.2g}", f.blew_up_at) : "failed";
   if (f.is_reference) return "reference";
   if (std::isnan(f.sigma)) return "no error";
-  if (f.verdict == Verdict::unclear) return fmt::format("< {:.2g}{}", 2.0 * f.sigma * scale, unit);
-  return fmt::format("{:+.2g}{}", f.bias * scale, unit);
+  if (f.verdict == Verdict::unclear) return number(2.0 * f.sigma * scale, "< ");
+  return number(f.bias * scale, f.bias < 0.0 ? "-" : "+");
 }
 
 StudyPicture stability_map(const StudyResults& results, const StudyObservable& observable,
@@ -177,7 +186,7 @@ StudyPicture stability_map(const StudyResults& results, const StudyObservable& o
         : shown == Verdict::biased  ? 1
         : shown == Verdict::unclear ? 2
                                     : 3,
-        cell_text(*f, relative)};
+        cell_text(*f, observable.tolerance, relative)};
   }
   return picture;
 }

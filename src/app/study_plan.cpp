@@ -17,7 +17,7 @@ namespace odpd {
 namespace {
 
 // What has no part in the equilibrium distribution: how the motion is followed and damped.
-constexpr std::array<std::string_view, 11> dynamical{"integrator.",
+constexpr std::array<std::string_view, 13> dynamical{"integrator.",
                                                      "solver.",
                                                      "run.",
                                                      "output.",
@@ -26,7 +26,9 @@ constexpr std::array<std::string_view, 11> dynamical{"integrator.",
                                                      "fluid.gamma",
                                                      "fluid.gamma_perp",
                                                      "fluid.eta",
+                                                     "fluid.Sc",
                                                      "fluid.zeta_0",
+                                                     "fluid.s",
                                                      "fluid.rattler_friction"};
 
 bool is_dynamical(const std::string& key) {
@@ -123,7 +125,8 @@ void build(const StudySettings& study, const std::string& label, bool measure, S
 
 void add_runs(const StudySettings& study, const ConfigValues& keys, bool measure,
               StudyPoint& point) {
-  for (std::int64_t seed = 1; seed <= study.seeds; ++seed) {
+  const std::int64_t seeds = point.monte_carlo ? 1 : study.seeds;
+  for (std::int64_t seed = 1; seed <= seeds; ++seed) {
     StudyRun run;
     ConfigValues all = keys;
     all.emplace_back("seed", std::to_string(seed));
@@ -160,30 +163,25 @@ std::vector<std::vector<std::size_t>> combinations(const StudySettings& study) {
   return list;
 }
 
-// The keys of the Monte Carlo run of a point's equilibrium, and what tells it from others.
+// The keys of the Monte Carlo run of a point's equilibrium, and a label that tells it from others.
 std::pair<ConfigValues, std::string> equilibrium(const StudySettings& study,
                                                  const std::vector<std::size_t>& at) {
-  std::pair<ConfigValues, std::string> result{{}, "monte-carlo"};
+  ConfigValues keys;
+  std::string label = "monte-carlo";
   for (const auto& key : study.set)
-    if (!is_dynamical(key.first) || key.first.starts_with("run.")) result.first.push_back(key);
+    if (!key.first.starts_with("integrator.") && !key.first.starts_with("run."))
+      keys.push_back(key);
   for (std::size_t k = 0; k < study.axes.size(); ++k) {
     const AxisValue& value = study.axes[k].values[at[k]];
-    bool differs = false;
-    for (const auto& key : value.set) {
-      if (is_dynamical(key.first)) continue;
-      result.first.push_back(key);
-      differs = true;
-    }
-    if (differs) result.second += fmt::format(", {}={}", study.axes[k].name, value.label);
+    ConfigValues physical = value.set;
+    std::erase_if(physical, [](const auto& key) { return is_dynamical(key.first); });
+    keys.insert(keys.end(), physical.begin(), physical.end());
+    if (!physical.empty()) label += fmt::format(", {}={}", study.axes[k].name, value.label);
   }
-  const StudyBudget& budget = study.budget;
-  if (budget.duration > 0.0)
-    result.first.emplace_back("run.duration", fmt::format("{}", budget.duration));
-  if (budget.equilibrate >= 0.0)
-    result.first.emplace_back("run.equilibrate", fmt::format("{}", budget.equilibrate));
-  result.first.insert(result.first.end(), study.monte_carlo.begin(), study.monte_carlo.end());
-  result.first.emplace_back("integrator.name", "\"monte-carlo\"");
-  return result;
+  keys.insert(keys.end(), {{"integrator.name", "\"monte-carlo\""}, {"integrator.dt", "1.0"}});
+  keys.insert(keys.end(), {{"run.equilibrate", "1000.0"}, {"run.duration", "20000.0"}});
+  keys.insert(keys.end(), study.monte_carlo.begin(), study.monte_carlo.end());
+  return {keys, label};
 }
 
 std::size_t reference_of(const StudySettings& study, const StudyPlan& plan, std::size_t point,

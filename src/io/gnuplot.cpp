@@ -50,6 +50,12 @@ struct Span {
   }
 };
 
+constexpr const char* limit_title = "below the noise: upper limit";
+
+bool has_limits(const Points& points) {
+  return std::any_of(points.begin(), points.end(), [](const Point& p) { return p.limit; });
+}
+
 /// A word in a data block.
 std::string data_word(const std::string& text) {
   std::string word = "\"";
@@ -136,6 +142,10 @@ std::string legend(const Chart& chart, const std::vector<Points>& curves, const 
     if (!curve.title.empty()) ++entries;
   }
   if (entries == 0) return "set key off\n";
+  if (std::any_of(curves.begin(), curves.end(), has_limits)) {
+    letters = std::max(letters, std::string(limit_title).size());
+    ++entries;
+  }
   const double wide = 0.11 + 0.0125 * static_cast<double>(letters);
   const double high = 0.06 + 0.05 * static_cast<double>(entries);
   std::array<int, 4> covered{};  // left top, right top, left bottom, right bottom
@@ -245,6 +255,9 @@ bool draw_chart(const std::filesystem::path& stem, const Chart& chart) {
     plot += (plot.empty() ? "plot " : ", \\\n     ") +
             elements(chart.curves[k], fmt::format("$curve{}", k), place[k]);
   }
+  if (std::any_of(curves.begin(), curves.end(), has_limits) && !plot.empty())
+    plot += fmt::format(", \\\n     NaN with points pt {} ps 1.3 lw 2 lc '#444444' title {}",
+                        hollow_symbols[0], gnuplot_quoted(limit_title));
   std::string script = "# Run: gnuplot " + stem.filename().string() + ".gp\n" + data;
   script += fmt::format("set title {} noenhanced\nset xlabel {}\nset ylabel {}\n",
                         gnuplot_quoted(chart.title), gnuplot_quoted(chart.x_label),

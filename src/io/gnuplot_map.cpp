@@ -15,6 +15,12 @@ constexpr double cell_width = 96.0, cell_height = 52.0;
 constexpr double left = 120.0, right = 30.0, above = 46.0, below = 84.0;  // around a panel
 constexpr double title_height = 50.0, legend_height = 60.0;
 
+constexpr double legend_left = 40.0;
+
+double legend_width(const CellMap::Kind& kind) {
+  return 60.0 + 10.5 * static_cast<double>(kind.name.size());
+}
+
 struct Layout {
   std::size_t columns = 1, rows = 1;
   double panel_width, panel_height, width, height;
@@ -27,7 +33,9 @@ struct Layout {
     columns = std::clamp<std::size_t>(static_cast<std::size_t>(1900.0 / panel_width), 1, panels);
     rows = (panels + columns - 1) / columns;
     columns = (panels + rows - 1) / rows;
-    width = std::max(panel_width * static_cast<double>(columns), 640.0);
+    double legend = legend_left;
+    for (const CellMap::Kind& kind : map.kinds) legend += legend_width(kind);
+    width = std::max({panel_width * static_cast<double>(columns), 640.0, legend});
     height = title_height + panel_height * static_cast<double>(rows) + legend_height;
   }
   double x(std::size_t panel) const {
@@ -89,10 +97,10 @@ bool draw_map(const std::filesystem::path& stem, const CellMap& map) {
       layout.width, layout.height);
   script += label(map.title, 0.5 * layout.width, layout.height - 26.0, "center");
   for (std::size_t k = 0; k < map.panels.size(); ++k) script += panel_text(map, layout, k);
-  double x = 40.0;
+  double x = legend_left;
   for (const CellMap::Kind& kind : map.kinds) {
     script += box(x, 20.0, 26.0, 22.0, kind.colour) + label(kind.name, x + 34.0, 31.0, "left");
-    x += 60.0 + 10.5 * static_cast<double>(kind.name.size());
+    x += legend_width(kind);
   }
   script += gnuplot_outputs(stem.filename().string(), "plot NaN notitle",
                             static_cast<int>(std::lround(layout.width)),

@@ -1,6 +1,7 @@
 #pragma once
 // The points of a study: every combination of the values of its axes, less those left out, each repeated with the
-// seeds 1, 2, ...; and the Monte Carlo runs that its references need, one per distinct equilibrium.
+// seeds 1, 2, ...; and the Monte Carlo runs that its references need, one per distinct
+// equilibrium, 20000 sweeps unless [monte_carlo] says otherwise.
 #include <cstdint>
 #include <string>
 #include <vector>
