@@ -159,7 +159,7 @@ void mark_front(const StudySettings& study, const StudyPlan& plan, std::vector<F
     std::vector<std::size_t> group;
     for (std::size_t j = first; j < all.size(); ++j)
       if (same_chart(study, plan.points[all[k].point], plan.points[all[j].point]) &&
-          !all[j].is_reference && all[j].verdict != Verdict::blew_up)
+          !all[j].is_reference && all[j].verdict != Verdict::blew_up && std::isfinite(all[j].sigma))
         group.push_back(j);
     if (group.empty() || group.front() != k) continue;  // each group once
     std::vector<double> cost, error;

@@ -130,7 +130,7 @@ std::string cell_text(const Finding& f, double tolerance, bool relative) {
   if (f.verdict == Verdict::blew_up)
     return std::isfinite(f.blew_up_at) ? fmt::format("t = {:.2g}", f.blew_up_at) : "failed";
   if (f.is_reference) return "reference";
-  if (std::isnan(f.sigma)) return "no error";
+  if (std::isnan(f.sigma)) return number(f.bias * scale, f.bias < 0.0 ? "-" : "+") + "?";
   if (f.verdict == Verdict::unclear) return number(2.0 * f.sigma * scale, "< ");
   return number(f.bias * scale, f.bias < 0.0 ? "-" : "+");
 }
@@ -156,7 +156,7 @@ StudyPicture stability_map(const StudyResults& results, const StudyObservable& o
                             relative ? " %" : ""),
                 "#a8d8b9"},
                {"biased", "#fdc27a"},
-               {"unclear: too noisy", "#dddddd"},
+               {"unclear: too noisy, or no error known (?)", "#dddddd"},
                {"blew up, at time t", "#e57368"}};
   const auto ticks = [&](std::size_t axis, std::string& label, std::vector<std::string>& list) {
     if (axis == none) return list.emplace_back("");

@@ -48,6 +48,8 @@ std::string inline_svg(const std::string& text, std::size_t number) {
   const std::size_t begin = text.find("<svg");
   if (begin == std::string::npos) return "";
   std::string svg = text.substr(begin);
+  const std::string title = "<title>Gnuplot</title>";  // would pop up over the picture
+  if (const std::size_t at = svg.find(title); at != std::string::npos) svg.erase(at, title.size());
   for (const std::string mark : {"id=\"", "id='", "href=\"#", "href='#", "url(#"}) {
     const std::string tag = fmt::format("p{}_", number);
     for (std::size_t at = svg.find(mark); at != std::string::npos;

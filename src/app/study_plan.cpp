@@ -29,7 +29,7 @@ constexpr std::array<std::string_view, 13> dynamical{"integrator.",
                                                      "fluid.Sc",
                                                      "fluid.zeta_0",
                                                      "fluid.s",
-                                                     "fluid.rattler_friction"};
+                                                     "fluid.rattler_friction."};
 
 bool is_dynamical(const std::string& key) {
   return std::any_of(dynamical.begin(), dynamical.end(), [&](std::string_view start) {
