@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -29,6 +30,17 @@ std::string quoted_for_shell(const std::string& word) {
   std::string out = "'";
   for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
+}
+
+// key="word" as key=word, where that means the same.
+std::string bare(const std::string& assignment) {
+  const std::size_t quote = assignment.find("=\"");
+  if (quote == std::string::npos || assignment.back() != '"') return assignment;
+  const std::string word = assignment.substr(quote + 2, assignment.size() - quote - 3);
+  const bool is_word = is_plain_name(word) && word != "true" && word != "false" &&
+                       !std::isdigit(static_cast<unsigned char>(word.front())) &&
+                       word.front() != '-' && word != "inf" && word != "nan";
+  return is_word ? assignment.substr(0, quote + 1) + word : assignment;
 }
 
 std::string duration_text(double seconds) {
@@ -192,7 +204,7 @@ void write_files(const fs::path& out, const StudyResults& results) {
 
 std::string run_command(const StudySettings& study, const StudyRun& run) {
   std::string command = "odpd run " + quoted_for_shell(study.case_path.string());
-  for (const std::string& o : run.overrides) command += " --set " + quoted_for_shell(o);
+  for (const std::string& o : run.overrides) command += " --set " + quoted_for_shell(bare(o));
   return command;
 }
 

@@ -115,11 +115,6 @@ std::string JsonDocument::text(const Path& path) const {
   return found && found->is_string() ? found->get<std::string>() : "";
 }
 
-bool JsonDocument::truth(const Path& path) const {
-  const Value* found = impl_->find(path);
-  return found && found->is_boolean() && found->get<bool>();
-}
-
 std::vector<std::string> JsonDocument::keys(const Path& path) const {
   std::vector<std::string> names;
   const Value* found = impl_->find(path);

@@ -48,7 +48,6 @@ class JsonDocument {
   using Path = std::vector<std::string>;
   double number(const Path& path) const;                  ///< NaN when absent or not a number
   std::string text(const Path& path) const;               ///< "" when absent or not a string
-  bool truth(const Path& path) const;                     ///< false when absent or not true
   std::vector<std::string> keys(const Path& path) const;  ///< of the object there, in their order
 
  private:
