@@ -38,9 +38,13 @@ std::string info_text() {
       ODPD_NATIVE ? "those of the machine it was compiled on (-march=native)" : "x86-64 baseline");
   out += fmt::format("  solvers       {}\n", fmt::join(available_solvers(), ", "));
   out += fmt::format("  integrators   {}\n", fmt::join(integrator_names(), ", "));
-  out += fmt::format("  machine       {}, {} processors, {:.1f} GiB\n", processor(),
-                     omp_get_num_procs(), memory_gibibytes());
+  out += fmt::format("  machine       {}\n", machine_text());
   return out;
+}
+
+std::string machine_text() {
+  return fmt::format("{}, {} processors, {:.1f} GiB", processor(), omp_get_num_procs(),
+                     memory_gibibytes());
 }
 
 }  // namespace odpd

@@ -12,6 +12,7 @@
 #include "odpd/app/info.h"
 #include "odpd/app/interrupt.h"
 #include "odpd/app/run.h"
+#include "odpd/app/study.h"
 #include "odpd/core/error.h"
 #include "odpd/core/log.h"
 #include "odpd/version.h"
@@ -44,8 +45,8 @@ std::string usage_error(const CLI::App& app, const std::string& reason) {
   const std::vector<std::string> words = app.remaining();
   const auto word =
       std::find_if(words.begin(), words.end(), [](const auto& w) { return w.rfind('-', 0) != 0; });
-  if (word == words.end()) return "a command is needed: run, compare, info; see odpd --help";
-  return "there is no command '" + *word + "', only run, compare, info; see odpd --help";
+  if (word == words.end()) return "a command is needed: run, compare, study, info; see odpd --help";
+  return "there is no command '" + *word + "', only run, compare, study, info; see odpd --help";
 }
 
 CLI::App* add_run(CLI::App& app, odpd::RunOptions& run, bool& quiet) {
@@ -99,6 +100,26 @@ CLI::App* add_compare(CLI::App& app, odpd::CompareOptions& compare, std::string&
   return compare_command;
 }
 
+CLI::App* add_study(CLI::App& app, odpd::StudyOptions& study, bool& quiet) {
+  CLI::App* command = app.add_subcommand(
+      "study", "run a case over axes of its keys: error against cost, and where methods break");
+  command->add_option("study", study.study_path, "study.toml, or the directory that holds it")
+      ->required();
+  command->add_flag("--quick", study.quick, "the study's quick form: fewer and shorter points");
+  command->add_flag("--dry-run", study.dry_run,
+                    "list the points and an estimate of the time; no files");
+  command->add_option(
+      "--out", study.out,
+      "output directory [runs/study-<name>]; what is finished there is not run again");
+  command
+      ->add_option("--threads", study.threads,
+                   "threads of each run, one after another; 0 chooses by its size")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  command->add_flag("--quiet", quiet, "as before the command");
+  return command;
+}
+
 int command_line(int argc, char** argv) {
   CLI::App app{"odpd: creeping flow of dissipative-particle fluids"};
   app.set_version_flag("--version", "odpd " ODPD_VERSION);
@@ -112,6 +133,8 @@ int command_line(int argc, char** argv) {
   odpd::CompareOptions compare;
   std::string stopping = "residual";
   const CLI::App* compare_command = add_compare(app, compare, stopping, quiet);
+  odpd::StudyOptions study;
+  const CLI::App* study_command = add_study(app, study, quiet);
   CLI::App* info_command =
       app.add_subcommand("info", "version, build options, backends and machine");
 
@@ -124,6 +147,7 @@ int command_line(int argc, char** argv) {
   odpd::set_quiet(quiet);
   odpd::let_large_writes_fail();
   if (run_command->parsed()) return odpd::run_case(run);
+  if (study_command->parsed()) return odpd::run_study(study);
   compare.increment_rule = stopping == "increment";
   if (compare_command->parsed()) return odpd::compare_solvers(compare);
   if (info_command->parsed()) std::fputs(odpd::info_text().c_str(), stdout);

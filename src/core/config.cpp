@@ -173,6 +173,23 @@ Value value_or(ConfigNode& table, const std::string& key, const Value& fallback,
   return fallback;
 }
 
+// ---- values that are passed on
+
+void mark_read(ConfigNode& node) {
+  node.read = true;
+  if (ConfigTable* table = node.table())
+    for (auto& [key, below] : table->members) mark_read(*below);
+  else if (ConfigArray* array = node.array())
+    for (auto& element : array->elements) mark_read(*element);
+}
+
+ConfigValues values_below(ConfigNode& node) {
+  mark_read(node);
+  ConfigValues values = flat_values(node);
+  for (auto& [path, text] : values) path.erase(0, std::min(path.size(), node.path.size() + 1));
+  return values;
+}
+
 // ---- unread keys
 
 std::string remedy(const std::string& key, const ConfigTable& table) {
@@ -324,6 +341,20 @@ std::vector<Config> Config::tables(const std::string& key) const {
   return elements;
 }
 
+ConfigValues Config::values(const std::string& key) const {
+  ConfigNode* node = node_->table()->find(key);
+  if (!read_member(*node_, key)) return {};
+  return values_below(*node);
+}
+
+std::vector<ConfigValues> Config::elements(const std::string& key) const {
+  const ConfigNode& node = required_member(*tree_, *node_, key);
+  if (!node.array()) fail_type(node, "an array");
+  std::vector<ConfigValues> list;
+  for (const auto& element : node.array()->elements) list.push_back(values_below(*element));
+  return list;
+}
+
 void Config::fail(const std::string& key, const std::string& message) const {
   if (key.empty()) fail_at(*node_, message);
   const ConfigNode* node = node_->table()->find(key);
@@ -335,9 +366,7 @@ void Config::reject_unread() const { reject_unread_below(tree_->root); }
 
 std::string Config::resolved() const { return document_text(tree_->root); }
 
-std::vector<std::pair<std::string, std::string>> Config::flattened() const {
-  return flat_values(tree_->root);
-}
+ConfigValues Config::flattened() const { return flat_values(tree_->root); }
 
 std::filesystem::path Config::directory() const { return tree_->directory; }
 

@@ -19,12 +19,15 @@ namespace {
 // Okabe and Ito 2008: told apart by colour-blind readers. Their yellow is too faint on white.
 constexpr std::array<const char*, 7> colours{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                              "#E69F00", "#56B4E9", "#000000"};
-constexpr std::array<int, 7> symbols{7, 5, 9, 13, 11, 15, 6};
+constexpr std::array<int, 7> symbols{7, 5, 9, 13, 11, 15, 3};
+constexpr std::array<int, 7> hollow_symbols{6, 4, 8, 12, 10, 14, 2};
 constexpr int width = 960;
 constexpr int height = 640;
 
 struct Point {
   double x, y, low, high;
+  bool limit = false;
+  std::string label;
 };
 using Points = std::vector<Point>;
 
@@ -47,6 +50,19 @@ struct Span {
   }
 };
 
+constexpr const char* limit_title = "below the noise: upper limit";
+
+bool has_limits(const Points& points) {
+  return std::any_of(points.begin(), points.end(), [](const Point& p) { return p.limit; });
+}
+
+/// A word in a data block.
+std::string data_word(const std::string& text) {
+  std::string word = "\"";
+  for (const char c : text) word += c == '"' || c == '\\' || c == '\n' ? ' ' : c;
+  return word + "\"";
+}
+
 Points drawable(const Curve& curve, const Chart& chart, const std::filesystem::path& stem) {
   const bool bars = !curve.error.empty();
   if (curve.x.size() != curve.y.size() || (bars && curve.error.size() != curve.x.size())) {
@@ -61,7 +77,9 @@ Points drawable(const Curve& curve, const Chart& chart, const std::filesystem::p
     if (!std::isfinite(x) || !std::isfinite(y)) continue;
     if ((chart.log_x && x <= 0.0) || (chart.log_y && y <= 0.0)) continue;
     const double error = bars && std::isfinite(curve.error[i]) ? std::abs(curve.error[i]) : 0.0;
-    points.push_back({x, y, y - error, y + error});
+    const bool limit = i < curve.limit.size() && curve.limit[i];
+    points.push_back({x, y, y - error, limit ? y : y + error, limit,
+                      i < curve.label.size() ? curve.label[i] : ""});
   }
   return points;
 }
@@ -124,6 +142,10 @@ std::string legend(const Chart& chart, const std::vector<Points>& curves, const 
     if (!curve.title.empty()) ++entries;
   }
   if (entries == 0) return "set key off\n";
+  if (std::any_of(curves.begin(), curves.end(), has_limits)) {
+    letters = std::max(letters, std::string(limit_title).size());
+    ++entries;
+  }
   const double wide = 0.11 + 0.0125 * static_cast<double>(letters);
   const double high = 0.06 + 0.05 * static_cast<double>(entries);
   std::array<int, 4> covered{};  // left top, right top, left bottom, right bottom
@@ -162,32 +184,50 @@ std::string legend(const Chart& chart, const std::vector<Points>& curves, const 
   return "set key below height 1 Left reverse noenhanced samplen 2 spacing 1.15\n";
 }
 
-/// The plot elements of one curve whose data block is $curveN.
-std::string elements(const Curve& curve, std::size_t number) {
-  const std::size_t style = number % colours.size();
+/// The plot elements of one curve, the `place`-th of the palette, whose data block is `data`.
+std::string elements(const Curve& curve, const std::string& data, std::size_t place) {
+  const std::size_t style = place % colours.size(), round = place / colours.size();
+  const std::size_t mark = (place + round) % symbols.size();
   const bool points = curve.points || !curve.line;
   const bool bars = !curve.error.empty();
   const std::string look = fmt::format("lc '{}'", colours[style]);
-  const std::string marks = fmt::format("pt {} ps 1.1", symbols[style]);
   const std::string title =
       curve.title.empty() ? "notitle" : "title " + gnuplot_quoted(curve.title);
-  const std::string data = fmt::format("$curve{}", number);
+  if (curve.backdrop) {
+    std::string text = fmt::format("{} using 1:2 with lines lc '#c8c8c8' lw 9 {}", data, title);
+    if (!curve.label.empty())
+      text += fmt::format(
+          ", {} using 1:2:6 with labels noenhanced offset 0,-1.1 tc '#606060' notitle", data);
+    return text;
+  }
   std::string text;
   if (bars && !points) {
     text += fmt::format("{} using 1:3:4 with filledcurves {} fs transparent solid 0.2 notitle, ",
                         data, look);
   }
-  if (bars && points) {
-    return text + fmt::format("{} using 1:2:3:4 with {} {} {} lw 2 {}", data,
-                              curve.line ? "yerrorlines" : "yerrorbars", look, marks, title);
-  }
-  if (points) {
-    return text + fmt::format("{} using 1:2 with {} {} {} lw 2 {}", data,
-                              curve.line ? "linespoints" : "points", look, marks, title);
-  }
   // Second time round the palette lines are dashed.
-  return text + fmt::format("{} using 1:2 with lines {} lw 2.5 dt {} {}", data, look,
-                            number / colours.size() + 1, title);
+  if (!points)
+    return text +
+           fmt::format("{} using 1:2 with lines {} lw 2.5 dt {} {}", data, look, round + 1, title);
+  if (curve.line)
+    text += fmt::format("{} using 1:2 with lines {} lw 2 dt {} notitle, ", data, look, round + 1);
+  const char* columns = bars ? "3:4" : "";
+  const char* with = bars ? "yerrorbars" : "points";
+  const bool limits = std::find(curve.limit.begin(), curve.limit.end(), true) != curve.limit.end();
+  if (limits)
+    text +=
+        fmt::format("{} using 1:($5 == 1 ? $2 : NaN){}{} with {} {} pt {} ps 1.3 lw 2 notitle, ",
+                    data, bars ? ":" : "", columns, with, look, hollow_symbols[mark]);
+  return text + fmt::format("{} using 1:($5 == 0 ? $2 : NaN){}{} with {} {} pt {} ps 1.1 lw 2 {}",
+                            data, bars ? ":" : "", columns, with, look, symbols[mark], title);
+}
+
+/// The palette's place of each curve; a backdrop takes none.
+std::vector<std::size_t> places(const Chart& chart) {
+  std::vector<std::size_t> list;
+  std::size_t next = 0;
+  for (const Curve& curve : chart.curves) list.push_back(curve.backdrop ? 0 : next++);
+  return list;
 }
 
 }  // namespace
@@ -196,6 +236,7 @@ bool draw_chart(const std::filesystem::path& stem, const Chart& chart) {
   std::vector<Points> curves;
   Span x{chart.log_x}, y{chart.log_y};
   std::string data, plot;
+  const std::vector<std::size_t> place = places(chart);
   for (std::size_t k = 0; k < chart.curves.size(); ++k) {
     Points& points = curves.emplace_back(drawable(chart.curves[k], chart, stem));
     if (points.empty()) continue;
@@ -207,11 +248,16 @@ bool draw_chart(const std::filesystem::path& stem, const Chart& chart) {
       x.include(point.x);
       y.include(endless ? 0.5 * point.y : point.low);
       y.include(point.high);
-      data += fmt::format("{} {} {} {}\n", point.x, point.y, point.low, point.high);
+      data += fmt::format("{} {} {} {} {:d} {}\n", point.x, point.y, point.low, point.high,
+                          point.limit, data_word(point.label));
     }
     data += "EOD\n";
-    plot += (plot.empty() ? "plot " : ", \\\n     ") + elements(chart.curves[k], k);
+    plot += (plot.empty() ? "plot " : ", \\\n     ") +
+            elements(chart.curves[k], fmt::format("$curve{}", k), place[k]);
   }
+  if (std::any_of(curves.begin(), curves.end(), has_limits) && !plot.empty())
+    plot += fmt::format(", \\\n     NaN with points pt {} ps 1.3 lw 2 lc '#444444' title {}",
+                        hollow_symbols[0], gnuplot_quoted(limit_title));
   std::string script = "# Run: gnuplot " + stem.filename().string() + ".gp\n" + data;
   script += fmt::format("set title {} noenhanced\nset xlabel {}\nset ylabel {}\n",
                         gnuplot_quoted(chart.title), gnuplot_quoted(chart.x_label),

@@ -1,7 +1,13 @@
 #include "odpd/io/json.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+
+#include "odpd/core/error.h"
+#include "odpd/io/file.h"
 
 namespace odpd {
 
@@ -74,6 +80,47 @@ JsonObject& JsonObject::set(const std::string& key, const std::vector<double>& v
 std::string JsonObject::text() const {
   // Bytes that are no UTF-8 (a path may hold them) are replaced rather than refused.
   return impl_->value.dump(2, ' ', false, Value::error_handler_t::replace);
+}
+
+struct JsonDocument::Impl {
+  Value value;
+  /// The value at `path`, null when there is none.
+  const Value* find(const Path& path) const {
+    const Value* here = &value;
+    for (const std::string& key : path) {
+      if (!here->is_object() || !here->contains(key)) return nullptr;
+      here = &here->at(key);
+    }
+    return here;
+  }
+};
+
+JsonDocument::JsonDocument(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
+  impl_->value = Value::parse(read_file(file), nullptr, false);
+  if (impl_->value.is_discarded())
+    throw IoError(
+        fmt::format("{}: is not JSON; remove it, so that it is written again", file.string()));
+}
+JsonDocument::~JsonDocument() = default;
+JsonDocument::JsonDocument(JsonDocument&&) noexcept = default;
+
+double JsonDocument::number(const Path& path) const {
+  const Value* found = impl_->find(path);
+  return found && found->is_number() ? found->get<double>()
+                                     : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string JsonDocument::text(const Path& path) const {
+  const Value* found = impl_->find(path);
+  return found && found->is_string() ? found->get<std::string>() : "";
+}
+
+std::vector<std::string> JsonDocument::keys(const Path& path) const {
+  std::vector<std::string> names;
+  const Value* found = impl_->find(path);
+  if (found && found->is_object())
+    for (const auto& member : found->items()) names.push_back(member.key());
+  return names;
 }
 
 }  // namespace odpd

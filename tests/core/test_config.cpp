@@ -256,6 +256,30 @@ TEST(ConfigSet, wrong_types_and_unread_keys_name_the_option) {
             "'fluid'?");
 }
 
+TEST(ConfigValuesOfAnother, come_with_relative_paths_and_count_as_read) {
+  const Config c = Config::from_text(R"([set]
+fluid.a = 18.5
+integrator = { name = "euler", dt = 1e-3 }
+walls = [1, 2]
+[axis]
+values = [0.5, "x", { label = "L", solver.name = "pcg" }]
+)",
+                                     "study.toml");
+  EXPECT_EQ(c.values("set"), (ConfigValues{{"fluid.a", "18.5"},
+                                           {"integrator.name", "\"euler\""},
+                                           {"integrator.dt", "0.001"},
+                                           {"walls", "[1, 2]"}}));
+  EXPECT_EQ(c.table("set").values("walls"), (ConfigValues{{"", "[1, 2]"}}));
+  EXPECT_TRUE(c.values("absent").empty());
+  EXPECT_EQ(c.table("axis").elements("values"),
+            (std::vector<ConfigValues>{
+                {{"", "0.5"}}, {{"", "\"x\""}}, {{"label", "\"L\""}, {"solver.name", "\"pcg\""}}}));
+  EXPECT_NE(error_of([&] { c.table("axis").elements("lost"); }).find("axis.lost"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { c.elements("set"); }).find("an array is needed"), std::string::npos);
+  EXPECT_NO_THROW(c.reject_unread());
+}
+
 TEST(ConfigDirectory, of_a_bare_name_is_the_current_one) {
   EXPECT_EQ(Config::from_text("", "case.toml").directory(), ".");
   EXPECT_EQ(Config::from_text("", "cases/01/case.toml").directory(), "cases/01");

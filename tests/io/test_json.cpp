@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "io/temporary_directory.h"
+#include "odpd/core/error.h"
+#include "odpd/io/file.h"
 #include "odpd/io/json.h"
 
 namespace odpd {
@@ -53,6 +57,25 @@ TEST(Json, BytesThatAreNoUtf8DoNotThrow) {
   JsonObject object;
   object.set("path", std::string("bad \xFF byte"));
   EXPECT_NO_THROW(nlohmann::json::parse(object.text()));
+}
+
+TEST(JsonDocument, FindsByPathAndSaysNothingIsThere) {
+  const test::TemporaryDirectory directory;
+  write_file_atomically(directory / "a.json",
+                        R"({"a": {"b": 1.5, "c": null, "d": "x"}, "e": true, "f": 2})");
+  const JsonDocument json(directory / "a.json");
+  EXPECT_EQ(json.number({"a", "b"}), 1.5);
+  EXPECT_EQ(json.number({"f"}), 2.0);
+  EXPECT_TRUE(std::isnan(json.number({"a", "c"})));
+  EXPECT_TRUE(std::isnan(json.number({"a", "b", "c"})));
+  EXPECT_EQ(json.text({"a", "d"}), "x");
+  EXPECT_EQ(json.text({"e"}), "");
+  EXPECT_EQ(json.keys({"a"}), (std::vector<std::string>{"b", "c", "d"}));
+  EXPECT_TRUE(json.keys({"z"}).empty());
+  write_file_atomically(directory / "half.json", "{\"a\": ");
+  EXPECT_NE(
+      test::message_of<IoError>([&] { JsonDocument(directory / "half.json"); }).find("half.json"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -142,6 +142,43 @@ TEST(Gnuplot, DrawsWhateverTheDataAre) {
   EXPECT_THROW(draw_chart(directory / "chart", uneven), IoError);
 }
 
+TEST(Gnuplot, DrawsUpperLimitsHollowAndABackdropWithLabels) {
+  if (!gnuplot_is_installed()) GTEST_SKIP() << "gnuplot is not installed";
+  const TemporaryDirectory directory;
+  Chart chart{"limits", "cost", "error", true, true, {}};
+  chart.curves.push_back(
+      {.title = "front", .x = {1, 2}, .y = {3, 2}, .error = {}, .line = true, .points = false});
+  chart.curves.back().backdrop = true;
+  chart.curves.back().label = {"0.05", "a \"b\""};
+  chart.curves.push_back({"method", {1, 2, 3}, {3, 2, 1}, {0.1, 0.1, 0.9}, true, true});
+  EXPECT_TRUE(draw_chart(directory / "chart", chart));
+  EXPECT_EQ(read_file(directory / "chart.svg").find("below the noise"), std::string::npos);
+  chart.curves.back().limit = {false, false, true};
+  EXPECT_TRUE(draw_chart(directory / "chart", chart));
+  const std::string svg = read_file(directory / "chart.svg");
+  EXPECT_NE(svg.find("below the noise"), std::string::npos);
+  EXPECT_NE(svg.find("0.05"), std::string::npos);
+}
+
+TEST(Gnuplot, DrawsMaps) {
+  if (!gnuplot_is_installed()) GTEST_SKIP() << "gnuplot is not installed";
+  const TemporaryDirectory directory;
+  CellMap map;
+  map.title = "it's a map";
+  map.x_label = "dt";
+  map.y_label = "a";
+  map.x_ticks = {"0.1", "0.2"};
+  map.y_ticks = {"5"};
+  map.kinds = {{"fine", "#a8d8b9"}, {"broken", "#e57368"}};
+  map.panels = {{"one", {{{0, "+1 %"}, {1, "t = 3"}}}}, {"two", {{{7, ""}, {0, "0"}}}}};
+  EXPECT_TRUE(draw_map(directory / "map", map));
+  expect_pictures(directory / "map");
+  const std::string svg = read_file(directory / "map.svg");
+  for (const char* text : {"it's a map", "one", "two", "+1 %", "t = 3", "fine", "broken"})
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+  EXPECT_TRUE(draw_map(directory / "empty", {}));
+}
+
 TEST(Gnuplot, DrawsParticles) {
   if (!gnuplot_is_installed()) GTEST_SKIP() << "gnuplot is not installed";
   const TemporaryDirectory directory;

@@ -5,5 +5,7 @@
 namespace odpd {
 
 std::string info_text();
+/// Processor, number of processors, memory.
+std::string machine_text();
 
 }  // namespace odpd

@@ -16,6 +16,9 @@ namespace odpd {
 struct ConfigTree;
 struct ConfigNode;
 
+/// Values by their dotted path, each as TOML text.
+using ConfigValues = std::vector<std::pair<std::string, std::string>>;
+
 class Config {
  public:
   /// Reads a TOML file. `include = "other.toml"` (top level, relative to the file) is read first
@@ -70,6 +73,12 @@ class Config {
   /// The elements of the array of tables `key` ([[key]] or key = [{...}, ...]); none when absent.
   std::vector<Config> tables(const std::string& key) const;
 
+  // Values of keys that somebody else will read, such as those of another file.
+  /// All below `key`, paths relative to it ("" for the value of `key` itself); none when absent.
+  ConfigValues values(const std::string& key) const;
+  /// The same for each element of the array `key`, which is required.
+  std::vector<ConfigValues> elements(const std::string& key) const;
+
   /// Throws ConfigError "FILE:LINE: key 'a.b.c': MESSAGE" (or "--set a.b.c: MESSAGE"); an empty key
   /// stands for this table. A key that the case does not give is placed at its table, or the file.
   [[noreturn]] void fail(const std::string& key, const std::string& message) const;
@@ -83,7 +92,7 @@ class Config {
   std::string resolved() const;
 
   /// Every value of the tree as (dotted path, TOML text), defaults included: to compare two cases.
-  std::vector<std::pair<std::string, std::string>> flattened() const;
+  ConfigValues flattened() const;
 
   /// Directory of the case file: relative paths in it start there.
   std::filesystem::path directory() const;

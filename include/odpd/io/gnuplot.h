@@ -15,6 +15,9 @@ namespace odpd {
 /// gnuplot fails or the pictures cannot be written.
 bool draw_chart(const std::filesystem::path& stem, const Chart& chart);
 
+/// The same for a map of cells.
+bool draw_map(const std::filesystem::path& stem, const CellMap& map);
+
 /// The particles coloured by `component` of velocity (0 = x), walls outlined; 3D: projected on x-y,
 /// the highest z in front. Of very many particles only every k-th is drawn, and the title says so.
 bool draw_particles(const std::filesystem::path& stem, const Frame& frame, int component);

@@ -1,6 +1,8 @@
 #pragma once
-// A small ordered JSON value for summaries, so that nlohmann/json stays inside .cpp files.
+// Small ordered JSON objects to write, and documents to look things up in, so that nlohmann/json
+// stays inside .cpp files.
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,6 +32,23 @@ class JsonObject {
   JsonObject& set(const std::string& key, const std::vector<JsonObject>& values);
   JsonObject& set(const std::string& key, const std::vector<double>& values);
   std::string text() const;  ///< indented by 2
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A JSON file to look things up in by path: {"observables", "pressure", "mean"}.
+class JsonDocument {
+ public:
+  /// Throws IoError naming the file when it cannot be read or is no JSON.
+  explicit JsonDocument(const std::filesystem::path& file);
+  ~JsonDocument();
+  JsonDocument(JsonDocument&&) noexcept;
+  using Path = std::vector<std::string>;
+  double number(const Path& path) const;                  ///< NaN when absent or not a number
+  std::string text(const Path& path) const;               ///< "" when absent or not a string
+  std::vector<std::string> keys(const Path& path) const;  ///< of the object there, in their order
 
  private:
   struct Impl;

@@ -1,0 +1,214 @@
+#include "odpd/app/study_run.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <sstream>
+#include <system_error>
+#include <thread>
+
+#include "odpd/app/interrupt.h"
+#include "odpd/core/error.h"
+#include "odpd/core/timer.h"
+#include "odpd/io/file.h"
+#include "odpd/io/json.h"
+
+extern char** environ;
+
+namespace odpd {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* word(RunStatus status) {
+  switch (status) {
+    case RunStatus::done:
+      return "done";
+    case RunStatus::out_of_time:
+      return "out of time";
+    case RunStatus::blew_up:
+      return "blew up";
+    case RunStatus::missing:
+      break;
+  }
+  return "missing";
+}
+
+// Starts the program with its output in log.txt, in a process group of its own: Ctrl-C comes to the study, which
+// passes it on once.
+pid_t start(const std::vector<std::string>& words, const fs::path& log) {
+  std::vector<char*> arguments;
+  for (const std::string& w : words) arguments.push_back(const_cast<char*>(w.c_str()));
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
+                                   O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  pid_t child = -1;
+  const int error = ::posix_spawn(&child, words.front().c_str(), &actions, &attributes,
+                                  arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0)
+    throw IoError(fmt::format("{}: cannot be started with its output in {}: {}; check permissions",
+                              words.front(), log.string(), std::generic_category().message(error)));
+  return child;
+}
+
+struct Ended {
+  int status = 0;  ///< of waitpid
+  bool out_of_time = false;
+};
+
+// Waits; asks the child once to stop when the user does or the time is up.
+Ended wait_for(pid_t child, double limit) {
+  Ended ended;
+  const Stopwatch watch;
+  bool asked = false;
+  while (true) {
+    const pid_t got = ::waitpid(child, &ended.status, WNOHANG);
+    if (got == child) break;
+    if (got < 0 && errno != EINTR)
+      throw IoError(
+          fmt::format("a point's process is lost: {}", std::generic_category().message(errno)));
+    ended.out_of_time = limit > 0.0 && watch.seconds() > limit;
+    if (!asked && (ended.out_of_time || interrupted())) {
+      ::kill(child, SIGINT);
+      asked = true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return ended;
+}
+
+// The text behind "odpd: error: " in the log.
+std::string last_error(const fs::path& log) {
+  std::istringstream lines(read_file(log));
+  const std::string mark = "odpd: error: ";
+  std::string message;
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(mark)) message = line.substr(mark.size());
+  return message;
+}
+
+// "step 123: ..." is how the program tells when a run broke.
+double time_of(const std::string& message, double dt) {
+  std::int64_t step = 0;
+  return std::sscanf(message.c_str(), "step %ld", &step) == 1 ? static_cast<double>(step) * dt
+                                                              : std::nan("");
+}
+
+void read_summary(const fs::path& file, RunOutcome& outcome) {
+  const JsonDocument summary(file);
+  outcome.time = summary.number({"time"});
+  outcome.wall_seconds = summary.number({"wall_seconds"});
+  outcome.step_seconds = 0.0;
+  for (const std::string& phase : summary.keys({"phase_seconds"}))
+    if (phase != "write" && phase != "measure")
+      outcome.step_seconds += summary.number({"phase_seconds", phase});
+  for (const std::string& name : summary.keys({"observables"}))
+    outcome.observables.push_back({name, summary.number({"observables", name, "mean"}),
+                                   summary.number({"observables", name, "stderr"})});
+}
+
+void write_outcome(const fs::path& file, const RunOutcome& outcome, double limit) {
+  JsonObject json;
+  json.set("status", word(outcome.status))
+      .set("message", outcome.message)
+      .set("time", outcome.time);
+  json.set("seconds_limit", limit);
+  write_file_atomically(file, json.text() + "\n");
+}
+
+bool is_same_case(const fs::path& directory, const StudyRun& run) {
+  std::error_code ignored;
+  return fs::is_regular_file(directory / "case.toml", ignored) &&
+         read_file(directory / "case.toml") == run.resolved;
+}
+
+}  // namespace
+
+const RunOutcome::Number* RunOutcome::find(const std::string& name) const {
+  for (const Number& number : observables)
+    if (number.name == name) return &number;
+  return nullptr;
+}
+
+RunOutcome earlier_outcome(const StudyExecution& execution, const StudyRun& run) {
+  const fs::path directory = execution.directory / run.name;
+  RunOutcome outcome;
+  std::error_code ignored;
+  if (!is_same_case(directory, run) || !fs::exists(directory / "outcome.json", ignored))
+    return outcome;
+  const JsonDocument json(directory / "outcome.json");
+  for (const RunStatus status : {RunStatus::done, RunStatus::out_of_time, RunStatus::blew_up})
+    if (json.text({"status"}) == word(status)) outcome.status = status;
+  // With more time, or no limit, it goes on.
+  const bool may_go_on =
+      execution.seconds == 0.0 || execution.seconds > json.number({"seconds_limit"});
+  if (outcome.status == RunStatus::out_of_time && may_go_on) return {};
+  outcome.message = json.text({"message"});
+  outcome.time = json.number({"time"});
+  if (outcome.status != RunStatus::blew_up)
+    read_summary(directory / "run" / "summary.json", outcome);
+  return outcome;
+}
+
+RunOutcome execute(const StudyExecution& execution, const StudyRun& run) {
+  const fs::path directory = execution.directory / run.name, log = directory / "log.txt";
+  const fs::path checkpoint = directory / "run" / "checkpoint.h5";
+  std::error_code ignored;
+  const bool continues = is_same_case(directory, run) && fs::exists(checkpoint, ignored);
+  make_directory(directory);
+  fs::remove(directory / "outcome.json", ignored);
+  write_file_atomically(directory / "case.toml", run.resolved);
+  std::vector<std::string> words{execution.program.string(),
+                                 "run",
+                                 (directory / "case.toml").string(),
+                                 "--quiet",
+                                 "--threads",
+                                 std::to_string(execution.threads)};
+  if (continues) {
+    words.insert(words.end(), {"--restart", checkpoint.string()});
+  } else {
+    words.insert(words.end(), {"--out", (directory / "run").string()});
+  }
+  const Ended ended = wait_for(start(words, log), execution.seconds);
+  RunOutcome outcome;
+  const int code = WIFEXITED(ended.status) ? WEXITSTATUS(ended.status) : -1;
+  const std::string message = last_error(log);
+  if (code < 0 && interrupted()) return outcome;
+  if (code == 1) throw ConfigError(fmt::format("the point {}: {}", run.name, message));
+  if (code == 3) throw IoError(fmt::format("the point {}: {}", run.name, message));
+  if (code == 130 && !ended.out_of_time) return outcome;
+  if (code == 0 || code == 4 || code == 130) {
+    outcome.status = code == 130 ? RunStatus::out_of_time : RunStatus::done;
+    read_summary(directory / "run" / "summary.json", outcome);
+  } else {
+    outcome.status = RunStatus::blew_up;
+    outcome.message =
+        !message.empty() ? message
+        : code >= 0      ? fmt::format("the program ended with code {}", code)
+                    : fmt::format("the program was ended by signal {}", WTERMSIG(ended.status));
+    outcome.time = time_of(message, run.dt);
+  }
+  // What ended in a way of its own (killed for its memory, say) gets another chance next time.
+  if (outcome.status != RunStatus::blew_up || code == 2)
+    write_outcome(directory / "outcome.json", outcome, execution.seconds);
+  return outcome;
+}
+
+}  // namespace odpd
