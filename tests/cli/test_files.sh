@@ -86,7 +86,7 @@ for name in ("energy_per_particle", "pressure", "config_temperature", "diffusion
 for name in ("energy_per_particle", "pressure", "config_temperature", "diffusion", "profile.slope"):
     assert isinstance(summary["observables"][name]["mean"], float), name
 phases = summary["phase_seconds"]
-assert set(phases) == {"neighbours", "edges", "noise", "assembly", "solve", "measure", "write"}, phases
+assert set(phases) == {"neighbours", "edges", "noise", "assembly", "solve", "sweep", "measure", "write"}, phases
 assert all(seconds >= 0.0 for seconds in phases.values()) and phases["solve"] > 0.0
 assert summary["solver"]["name"] == "pcg" and summary["solver"]["solves"] == 80
 assert summary["solver"]["worst_residual"] <= summary["solver"]["tolerance"]
