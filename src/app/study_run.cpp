@@ -3,9 +3,11 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -69,9 +71,14 @@ pid_t start(const std::vector<std::string>& words, const fs::path& log) {
 }
 
 struct Ended {
-  int status = 0;  ///< of waitpid
+  int status = 0;  ///< of the process
   bool out_of_time = false;
+  double share = 1.0;  ///< of the wall time that it had a processor
 };
+
+double seconds_of(const timeval& t) {
+  return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+}
 
 // Waits; asks the child once to stop when the user does or the time is up.
 Ended wait_for(pid_t child, double limit) {
@@ -79,8 +86,13 @@ Ended wait_for(pid_t child, double limit) {
   const Stopwatch watch;
   bool asked = false;
   while (true) {
-    const pid_t got = ::waitpid(child, &ended.status, WNOHANG);
-    if (got == child) break;
+    rusage usage{};
+    const pid_t got = ::wait4(child, &ended.status, WNOHANG, &usage);
+    if (got == child) {
+      const double used = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
+      ended.share = std::min(1.0, used / std::max(watch.seconds(), 1e-9));
+      break;
+    }
     if (got < 0 && errno != EINTR)
       throw IoError(
           fmt::format("a point's process is lost: {}", std::generic_category().message(errno)));
@@ -111,14 +123,15 @@ double time_of(const std::string& message, double dt) {
                                                               : std::nan("");
 }
 
-void read_summary(const fs::path& file, RunOutcome& outcome) {
+// Seconds of stepping count by the share of a processor that the run had: others on the machine do not make it slow.
+void read_summary(const fs::path& file, double share, RunOutcome& outcome) {
   const JsonDocument summary(file);
   outcome.time = summary.number({"time"});
   outcome.wall_seconds = summary.number({"wall_seconds"});
   outcome.step_seconds = 0.0;
   for (const std::string& phase : summary.keys({"phase_seconds"}))
     if (phase != "write" && phase != "measure")
-      outcome.step_seconds += summary.number({"phase_seconds", phase});
+      outcome.step_seconds += share * summary.number({"phase_seconds", phase});
   for (const std::string& name : summary.keys({"observables"}))
     outcome.observables.push_back({name, summary.number({"observables", name, "mean"}),
                                    summary.number({"observables", name, "stderr"})});
@@ -129,7 +142,7 @@ void write_outcome(const fs::path& file, const RunOutcome& outcome, double limit
   json.set("status", word(outcome.status))
       .set("message", outcome.message)
       .set("time", outcome.time);
-  json.set("seconds_limit", limit);
+  json.set("seconds_limit", limit).set("processor_share", outcome.processor_share);
   write_file_atomically(file, json.text() + "\n");
 }
 
@@ -163,7 +176,7 @@ RunOutcome earlier_outcome(const StudyExecution& execution, const StudyRun& run)
   outcome.message = json.text({"message"});
   outcome.time = json.number({"time"});
   if (outcome.status != RunStatus::blew_up)
-    read_summary(directory / "run" / "summary.json", outcome);
+    read_summary(directory / "run" / "summary.json", json.number({"processor_share"}), outcome);
   return outcome;
 }
 
@@ -196,7 +209,8 @@ RunOutcome execute(const StudyExecution& execution, const StudyRun& run) {
   if (code == 130 && !ended.out_of_time) return outcome;
   if (code == 0 || code == 4 || code == 130) {
     outcome.status = code == 130 ? RunStatus::out_of_time : RunStatus::done;
-    read_summary(directory / "run" / "summary.json", outcome);
+    outcome.processor_share = ended.share;
+    read_summary(directory / "run" / "summary.json", ended.share, outcome);
   } else {
     outcome.status = RunStatus::blew_up;
     outcome.message =

@@ -23,7 +23,9 @@ struct RunOutcome {
   std::string message;        ///< of a run that blew up, in the program's words
   double time = 0.0;          ///< simulated, equilibration included; of a blow-up: when it came
   double wall_seconds = 0.0;  ///< of the whole run; not known of a blow-up
-  double step_seconds = 0.0;  ///< of the steps alone: without measuring and writing
+  double step_seconds =
+      0.0;  ///< of the steps alone, without measuring and writing, while it had a processor
+  double processor_share = 1.0;  ///< of the wall time of its last part that the run had a processor
   struct Number {
     std::string name;
     double mean = 0.0, standard_error = 0.0;
