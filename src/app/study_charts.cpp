@@ -156,7 +156,7 @@ StudyPicture stability_map(const StudyResults& results, const StudyObservable& o
                             relative ? " %" : ""),
                 "#a8d8b9"},
                {"biased", "#fdc27a"},
-               {"unclear: too noisy, or no error known (?)", "#dddddd"},
+               {"unclear: noise (?: unknown)", "#dddddd"},
                {"blew up, at time t", "#e57368"}};
   const auto ticks = [&](std::size_t axis, std::string& label, std::vector<std::string>& list) {
     if (axis == none) return list.emplace_back("");

@@ -12,20 +12,23 @@ namespace odpd {
 namespace {
 
 constexpr double cell_width = 96.0, cell_height = 52.0;
-constexpr double left = 120.0, right = 30.0, above = 46.0, below = 84.0;  // around a panel
+constexpr double right = 30.0, above = 46.0, below = 84.0;  // around a panel
 constexpr double title_height = 50.0, legend_height = 60.0;
 
-constexpr double legend_left = 40.0;
+constexpr double legend_left = 40.0, letter_width = 10.5;
 
 double legend_width(const CellMap::Kind& kind) {
-  return 60.0 + 10.5 * static_cast<double>(kind.name.size());
+  return 60.0 + letter_width * static_cast<double>(kind.name.size());
 }
 
 struct Layout {
   std::size_t columns = 1, rows = 1;
-  double panel_width, panel_height, width, height;
+  double left, panel_width, panel_height, width, height, first_x;
 
   explicit Layout(const CellMap& map) {
+    std::size_t letters = map.y_label.size();
+    for (const std::string& tick : map.y_ticks) letters = std::max(letters, tick.size());
+    left = 30.0 + letter_width * static_cast<double>(letters);
     panel_width = left + cell_width * static_cast<double>(map.x_ticks.size()) + right;
     panel_height = above + cell_height * static_cast<double>(map.y_ticks.size()) + below;
     const std::size_t panels = std::max<std::size_t>(map.panels.size(), 1);
@@ -35,11 +38,13 @@ struct Layout {
     columns = (panels + rows - 1) / rows;
     double legend = legend_left;
     for (const CellMap::Kind& kind : map.kinds) legend += legend_width(kind);
-    width = std::max({panel_width * static_cast<double>(columns), 640.0, legend});
+    const double title = letter_width * static_cast<double>(map.title.size());
+    width = std::max({title, panel_width * static_cast<double>(columns), 640.0, legend});
+    first_x = 0.5 * (width - panel_width * static_cast<double>(columns)) + left;
     height = title_height + panel_height * static_cast<double>(rows) + legend_height;
   }
   double x(std::size_t panel) const {
-    return left + panel_width * static_cast<double>(panel % columns);
+    return first_x + panel_width * static_cast<double>(panel % columns);
   }
   /// Of the lower edge of the cells.
   double y(std::size_t panel) const {
