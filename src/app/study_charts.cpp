@@ -156,7 +156,7 @@ StudyPicture stability_map(const StudyResults& results, const StudyObservable& o
                             relative ? " %" : ""),
                 "#a8d8b9"},
                {"biased", "#fdc27a"},
-               {"unclear: too noisy, or no error known (?)", "#dddddd"},
+               {"unclear: noise (?: unknown)", "#dddddd"},
                {"blew up, at time t", "#e57368"}};
   const auto ticks = [&](std::size_t axis, std::string& label, std::vector<std::string>& list) {
     if (axis == none) return list.emplace_back("");
@@ -166,6 +166,7 @@ StudyPicture stability_map(const StudyResults& results, const StudyObservable& o
   };
   ticks(study.sweep, map.x_label, map.x_ticks);
   ticks(across, map.y_label, map.y_ticks);
+  if (!panels) std::reverse(map.y_ticks.begin(), map.y_ticks.end());  // methods read from above
   const std::size_t count =
       panels && study.method != none ? study.axes[study.method].values.size() : 1;
   const CellMap::Cell blank{map.kinds.size(), ""};
@@ -178,9 +179,10 @@ StudyPicture stability_map(const StudyResults& results, const StudyObservable& o
   for (const Finding* f : all) {
     const StudyPoint& point = results.plan.points[f->point];
     const auto index = [&](std::size_t axis) { return axis == none ? 0 : point.at[axis]; };
+    const std::size_t row = panels ? index(across) : map.y_ticks.size() - 1 - index(across);
     const Verdict shown =
         f->is_reference && f->verdict != Verdict::blew_up ? Verdict::ok : f->verdict;
-    map.panels[panels ? index(study.method) : 0].rows[index(across)][index(study.sweep)] = {
+    map.panels[panels ? index(study.method) : 0].rows[row][index(study.sweep)] = {
         shown == Verdict::missing   ? map.kinds.size()
         : shown == Verdict::ok      ? 0
         : shown == Verdict::biased  ? 1

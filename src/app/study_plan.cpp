@@ -163,6 +163,21 @@ std::vector<std::vector<std::size_t>> combinations(const StudySettings& study) {
   return list;
 }
 
+// With fluid.alpha, a follows from gamma and mass: an axis over those is another equilibrium at each value.
+void refuse_hidden_equilibria(const StudySettings& study, const StudyPlan& plan) {
+  const StudyRun& run = plan.points.front().runs.front();
+  if (!Config::from_text(run.resolved, "case.toml").table("fluid").has("alpha")) return;
+  for (const StudyAxis& axis : study.axes)
+    for (const AxisValue& value : axis.values)
+      for (const auto& [key, text] : value.set)
+        if (key.starts_with("fluid.") && is_dynamical(key))
+          throw ConfigError(
+              fmt::format("{}: the axis '{}' sets {}, from which fluid.alpha makes the repulsion: "
+                          "give fluid.a instead of "
+                          "fluid.alpha, or another reference than \"monte-carlo\"",
+                          study.file.string(), axis.name, key));
+}
+
 // The keys of the Monte Carlo run of a point's equilibrium, and a label that tells it from others.
 std::pair<ConfigValues, std::string> equilibrium(const StudySettings& study,
                                                  const std::vector<std::size_t>& at) {
@@ -220,6 +235,7 @@ StudyPlan plan_study(const StudySettings& study, bool measure) {
     }
     monte_carlo.push_back(samplers[label]);
   }
+  if (sampled) refuse_hidden_equilibria(study, plan);
   const std::size_t references = plan.points.size();
   for (const auto& at : all) {
     ConfigValues keys = study.set;

@@ -123,8 +123,11 @@ double time_of(const std::string& message, double dt) {
                                                               : std::nan("");
 }
 
-// Seconds of stepping count by the share of a processor that the run had: others on the machine do not make it slow.
+// A run that was stopped while it started has none. Seconds of stepping count by the share of a processor that the run
+// had: others on the machine do not make it slow.
 void read_summary(const fs::path& file, double share, RunOutcome& outcome) {
+  std::error_code ignored;
+  if (outcome.status == RunStatus::out_of_time && !fs::exists(file, ignored)) return;
   const JsonDocument summary(file);
   outcome.time = summary.number({"time"});
   outcome.wall_seconds = summary.number({"wall_seconds"});
@@ -203,12 +206,12 @@ RunOutcome execute(const StudyExecution& execution, const StudyRun& run) {
   RunOutcome outcome;
   const int code = WIFEXITED(ended.status) ? WEXITSTATUS(ended.status) : -1;
   const std::string message = last_error(log);
-  if (code < 0 && interrupted()) return outcome;
+  const bool stopped = code == 130 || (code < 0 && WTERMSIG(ended.status) == SIGINT);
   if (code == 1) throw ConfigError(fmt::format("the point {}: {}", run.name, message));
   if (code == 3) throw IoError(fmt::format("the point {}: {}", run.name, message));
-  if (code == 130 && !ended.out_of_time) return outcome;
-  if (code == 0 || code == 4 || code == 130) {
-    outcome.status = code == 130 ? RunStatus::out_of_time : RunStatus::done;
+  if (stopped && !ended.out_of_time) return outcome;
+  if (code == 0 || code == 4 || stopped) {
+    outcome.status = stopped ? RunStatus::out_of_time : RunStatus::done;
     outcome.processor_share = ended.share;
     read_summary(directory / "run" / "summary.json", ended.share, outcome);
   } else {

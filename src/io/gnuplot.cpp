@@ -133,15 +133,19 @@ std::string linear_axis(char axis, const Span& span) {
   return fmt::format("set {}range [{}:{}]\n", axis, span.low - room, span.high + room);
 }
 
-/// Where the curves leave room for the legend: a corner, or below the picture.
-std::string legend(const Chart& chart, const std::vector<Points>& curves, const Span& x,
-                   const Span& y) {
+struct Legend {
+  std::string text;
+  int room = 0;  ///< pixels that it makes the picture wider
+};
+
+/// Where the curves leave room for the legend: a corner, or below the picture, or, where it is long, beside it.
+Legend legend(const Chart& chart, const std::vector<Points>& curves, const Span& x, const Span& y) {
   std::size_t letters = 0, entries = 0;
   for (const Curve& curve : chart.curves) {
     letters = std::max(letters, curve.title.size());
     if (!curve.title.empty()) ++entries;
   }
-  if (entries == 0) return "set key off\n";
+  if (entries == 0) return {"set key off\n"};
   if (std::any_of(curves.begin(), curves.end(), has_limits)) {
     letters = std::max(letters, std::string(limit_title).size());
     ++entries;
@@ -176,12 +180,14 @@ std::string legend(const Chart& chart, const std::vector<Points>& curves, const 
   constexpr std::array<std::size_t, 4> order{1, 0, 3, 2};
   for (const std::size_t corner : order) {
     if (covered[corner] > 0 || wide > 0.6 || high > 0.5) continue;
-    return fmt::format(
-        "set key inside {} Left reverse noenhanced box lc '#bbbbbb' opaque "
-        "samplen 2 spacing 1.15 width 1 height 0.4\n",
-        places[corner]);
+    return {
+        fmt::format("set key inside {} Left reverse noenhanced box lc '#bbbbbb' opaque "
+                    "samplen 2 spacing 1.15 width 1 height 0.4\n",
+                    places[corner])};
   }
-  return "set key below height 1 Left reverse noenhanced samplen 2 spacing 1.15\n";
+  const std::string style = "Left reverse noenhanced samplen 2 spacing 1.15\n";
+  if (entries <= 4) return {"set key below height 1 " + style};
+  return {"set key outside right top " + style, 80 + 10 * static_cast<int>(letters)};
 }
 
 /// The plot elements of one curve, the `place`-th of the palette, whose data block is `data`.
@@ -267,12 +273,13 @@ bool draw_chart(const std::filesystem::path& stem, const Chart& chart) {
       "set grid lt 1 lw 1 lc '#d8d8d8'\n";
   script += chart.log_x ? log_axis('x', x) : linear_axis('x', x);
   script += chart.log_y ? log_axis('y', y) : linear_axis('y', y);
-  script += legend(chart, curves, x, y);
+  const Legend key = legend(chart, curves, x, y);
+  script += key.text;
   if (plot.empty()) {
     script += "set label 'no data' at graph 0.5, 0.5 center\n";
     plot = "plot NaN notitle";
   }
-  script += gnuplot_outputs(stem.filename().string(), plot, width, height);
+  script += gnuplot_outputs(stem.filename().string(), plot, width + key.room, height);
   return run_gnuplot(stem, script);
 }
 

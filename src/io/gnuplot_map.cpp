@@ -12,21 +12,30 @@ namespace odpd {
 namespace {
 
 constexpr double cell_width = 96.0, cell_height = 52.0;
-constexpr double left = 120.0, right = 30.0, above = 46.0, below = 84.0;  // around a panel
+constexpr double above = 74.0, below = 84.0;  // around a panel
 constexpr double title_height = 50.0, legend_height = 60.0;
 
-constexpr double legend_left = 40.0;
+constexpr double legend_left = 40.0, letter_width = 10.5;
 
 double legend_width(const CellMap::Kind& kind) {
-  return 60.0 + 10.5 * static_cast<double>(kind.name.size());
+  return 60.0 + letter_width * static_cast<double>(kind.name.size());
 }
 
 struct Layout {
   std::size_t columns = 1, rows = 1;
-  double panel_width, panel_height, width, height;
+  double left, right, panel_width, panel_height, width, height, first_x;
 
   explicit Layout(const CellMap& map) {
-    panel_width = left + cell_width * static_cast<double>(map.x_ticks.size()) + right;
+    std::size_t letters = map.y_label.size();
+    for (const std::string& tick : map.y_ticks) letters = std::max(letters, tick.size());
+    const double cells = cell_width * static_cast<double>(map.x_ticks.size());
+    double beside = 20.0;  // of a panel's title, centred over the cells
+    for (const CellMap::Panel& panel : map.panels)
+      beside = std::max(
+          beside, 0.5 * (letter_width * static_cast<double>(panel.title.size()) - cells) + 20.0);
+    left = std::max(30.0 + letter_width * static_cast<double>(letters), beside);
+    right = beside;
+    panel_width = left + cells + right;
     panel_height = above + cell_height * static_cast<double>(map.y_ticks.size()) + below;
     const std::size_t panels = std::max<std::size_t>(map.panels.size(), 1);
     // As wide as about 1900 pixels allow.
@@ -35,11 +44,13 @@ struct Layout {
     columns = (panels + rows - 1) / rows;
     double legend = legend_left;
     for (const CellMap::Kind& kind : map.kinds) legend += legend_width(kind);
-    width = std::max({panel_width * static_cast<double>(columns), 640.0, legend});
+    const double title = letter_width * static_cast<double>(map.title.size());
+    width = std::max({title, panel_width * static_cast<double>(columns), 640.0, legend});
+    first_x = 0.5 * (width - panel_width * static_cast<double>(columns)) + left;
     height = title_height + panel_height * static_cast<double>(rows) + legend_height;
   }
   double x(std::size_t panel) const {
-    return left + panel_width * static_cast<double>(panel % columns);
+    return first_x + panel_width * static_cast<double>(panel % columns);
   }
   /// Of the lower edge of the cells.
   double y(std::size_t panel) const {
@@ -63,7 +74,7 @@ std::string panel_text(const CellMap& map, const Layout& layout, std::size_t num
   const double nx = static_cast<double>(map.x_ticks.size()),
                ny = static_cast<double>(map.y_ticks.size());
   std::string text =
-      label(panel.title, x0 + 0.5 * nx * cell_width, y0 + ny * cell_height + 22.0, "center");
+      label(panel.title, x0 + 0.5 * nx * cell_width, y0 + ny * cell_height + 50.0, "center");
   for (std::size_t i = 0; i < map.x_ticks.size(); ++i)
     text += label(map.x_ticks[i], x0 + (static_cast<double>(i) + 0.5) * cell_width, y0 - 16.0,
                   "center");

@@ -226,10 +226,11 @@ TEST_F(StudyFile, FindsBiasCostFrontAndBlowUps) {
   EXPECT_EQ(chart.curves[0].label, (std::vector<std::string>{"0.05", "0.02", "0.01"}));
   EXPECT_EQ(chart.curves[1].limit, (std::vector<bool>{true, false, false}));
   EXPECT_EQ(chart.curves[2].title, "E (2 blew up)");
-  const auto& rows = pictures[1].map.panels.at(0).rows;  // methods are the rows, dt the columns
+  const auto& rows =
+      pictures[1].map.panels.at(0).rows;  // methods are the rows, from above, dt the columns
   ASSERT_EQ(rows.size(), 2u);
-  EXPECT_EQ(rows[0][2].text, "+10.0 %");
-  EXPECT_EQ(rows[1][1].text, "t = 0.7");
+  EXPECT_EQ(rows[1][2].text, "+10.0 %");
+  EXPECT_EQ(rows[0][1].text, "t = 0.7");
   EXPECT_NE(findings_csv(results).find("E,0.02,pressure,blew up,1,31,"), std::string::npos);
   const std::string page = study_page(results, pictures, {"<?xml?><svg id=\"a\"></svg>", ""});
   EXPECT_NE(page.find("<svg id=\"p0_a\">"), std::string::npos);

@@ -129,7 +129,7 @@ assert mean("again") in [mean(run) for run in glob.glob(sys.argv[1] + "/points/*
 fi
 
 # --- a run that takes too long is kept with what it has ---
-replaced 'duration = 1.0' 'duration = 1e6\nseconds = 0.5'
+replaced 'duration = 1.0' 'duration = 1e6\nseconds = 1'
 sed -i 's/^quick = .*/quick = [0.01]/' bad/study.toml
 expect_exit 0 study bad --quick --out limited
 expect_text "$out_text" '(out of seconds)'

@@ -265,14 +265,14 @@ walls = [1, 2]
 values = [0.5, "x", { label = "L", solver.name = "pcg" }]
 )",
                                      "study.toml");
-  EXPECT_EQ(c.values("set"), (ConfigValues{{"fluid.a", "18.5"},
-                                           {"integrator.name", "\"euler\""},
-                                           {"integrator.dt", "0.001"},
-                                           {"walls", "[1, 2]"}}));
-  EXPECT_EQ(c.table("set").values("walls"), (ConfigValues{{"", "[1, 2]"}}));
+  EXPECT_EQ(c.values("set"), (odpd::ConfigValues{{"fluid.a", "18.5"},
+                                                 {"integrator.name", "\"euler\""},
+                                                 {"integrator.dt", "0.001"},
+                                                 {"walls", "[1, 2]"}}));
+  EXPECT_EQ(c.table("set").values("walls"), (odpd::ConfigValues{{"", "[1, 2]"}}));
   EXPECT_TRUE(c.values("absent").empty());
   EXPECT_EQ(c.table("axis").elements("values"),
-            (std::vector<ConfigValues>{
+            (std::vector<odpd::ConfigValues>{
                 {{"", "0.5"}}, {{"", "\"x\""}}, {{"label", "\"L\""}, {"solver.name", "\"pcg\""}}}));
   EXPECT_NE(error_of([&] { c.table("axis").elements("lost"); }).find("axis.lost"),
             std::string::npos);

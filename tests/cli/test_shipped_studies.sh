@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# The shipped studies in their quick form: they run, and they find what is known of the methods.
+source "$(dirname "$0")/lib.sh" "$@"
+
+study() { expect_exit 0 "$odpd" study "$source_root/studies/$1" --quick --out "$1"; }
+# verdict STUDY START OBSERVABLE: of the line of study.csv that begins with START.
+verdict() { grep -F "$2,$3," "$1/study.csv" | head -n 1 | sed "s/.*,$3,\([a-z ]*\),.*/\1/"; }
+# expect_verdict STUDY START OBSERVABLE VERDICT
+expect_verdict() {
+  local found
+  found=$(verdict "$1" "$2" "$3")
+  checks=$((checks + 1))
+  [ "$found" = "$4" ] || fail "$1: $2: $3 is '$found', not '$4'"
+}
+
+study integrators_2d
+expect_verdict integrators_2d 'euler,0.005' pressure biased
+expect_verdict integrators_2d 'euler,0.005' config_temperature biased
+expect_verdict integrators_2d 'velocity-verlet, m = 0.1",0.02' energy_per_particle 'blew up'
+study small_mass
+expect_verdict small_mass 'setd,0.0005' kinetic_temperature biased
+expect_verdict small_mass 'velocity-verlet 0.65,0.0001' kinetic_temperature biased
+expect_verdict small_mass 'velocity-verlet 0.65,0.0005' kinetic_temperature 'blew up'
+study tolerance
+expect test "$(grep -c 'blew up' tolerance/study.csv)" -eq 0
+study stability_dt_a
+expect_verdict stability_dt_a 'extrapolated,0.1,100.0' energy_per_particle 'blew up'
+study stability_low_density
+expect_verdict stability_low_density 'trapezoidal,0.05,1.0' energy_per_particle 'blew up'
+for name in integrators_2d small_mass tolerance stability_dt_a stability_low_density; do
+  expect test -s "$name/study.html"
+  expect test -z "$(grep ',missing,' "$name/study.csv")"
+done
+finish
