@@ -298,4 +298,17 @@ for solver in eigen-cg picard; do
   expect_exit 0 run many --threads 2 --set run.duration=0.02 --set solver.name=$solver --out "$solver-2"
   same_run "$solver-1" "$solver-2" files
 done
+
+# --- every integrator: its arrays survive a restart and a change of threads ---
+for scheme in midpoint extrapolated implicit euler monte-carlo mass:trapezoidal mass:extrapolated mass:setd mass:velocity-verlet \
+  mass:shardlow; do
+  settings=(--set "integrator.name=${scheme#mass:}" --set fluid.zeta_0=0.1)
+  [[ $scheme == mass:* ]] && settings+=(--set fluid.mass=0.2)
+  [[ $scheme == mass:setd ]] && settings+=(--set integrator.order=2)
+  name=${scheme/:/_}
+  expect_exit 0 run many --threads 1 "${settings[@]}" --out "$name"
+  expect_exit 0 run many --threads 2 "${settings[@]}" --set run.duration=0.05 --out "$name-parts"
+  expect_exit 0 run many --threads 1 "${settings[@]}" --restart "$name-parts/checkpoint.h5"
+  same_run "$name" "$name-parts"
+done
 finish
