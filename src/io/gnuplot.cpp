@@ -19,8 +19,8 @@ namespace {
 // Okabe and Ito 2008: told apart by colour-blind readers. Their yellow is too faint on white.
 constexpr std::array<const char*, 7> colours{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                              "#E69F00", "#56B4E9", "#000000"};
-constexpr std::array<int, 7> symbols{7, 5, 9, 13, 11, 15, 3};
-constexpr std::array<int, 7> hollow_symbols{6, 4, 8, 12, 10, 14, 2};
+constexpr std::array<int, 6> symbols{7, 5, 9, 13, 11, 15};
+constexpr std::array<int, 6> hollow_symbols{6, 4, 8, 12, 10, 14};
 constexpr int width = 960;
 constexpr int height = 640;
 
@@ -193,7 +193,7 @@ Legend legend(const Chart& chart, const std::vector<Points>& curves, const Span&
 /// The plot elements of one curve, the `place`-th of the palette, whose data block is `data`.
 std::string elements(const Curve& curve, const std::string& data, std::size_t place) {
   const std::size_t style = place % colours.size(), round = place / colours.size();
-  const std::size_t mark = (place + round) % symbols.size();
+  const std::size_t mark = place % symbols.size();
   const bool points = curve.points || !curve.line;
   const bool bars = !curve.error.empty();
   const std::string look = fmt::format("lc '{}'", colours[style]);
