@@ -194,6 +194,13 @@ CaseSettings read_case(const Config& config, const std::string& name) {
   const std::int64_t measured = steps_of(run, "duration", run.positive("duration"), c.clock.dt);
   if (measured < 1) run.fail("duration", "is shorter than one time step (integrator.dt)");
   c.clock.total_steps = c.clock.equilibration_steps + measured;
+  c.blow_up = run.positive("blow_up", c.blow_up);
+  if (!(c.blow_up > 1.0))
+    run.fail("blow_up", "is a multiple of what a sound run may reach: it must be above 1");
+  if (run.has("until")) {
+    const Config until = run.table("until");
+    c.until = TargetSettings{until.text("observable"), until.positive("standard_error")};
+  }
   const Config output = config.table("output");
   c.output.checkpoint_every = interval(output, "checkpoint_every", c.output.checkpoint_every);
   c.output.trajectory_every = interval(output, "trajectory_every", c.output.trajectory_every);
@@ -238,8 +245,10 @@ std::vector<std::pair<std::string, std::string>> fixed_values(const Config& conf
   for (const auto& value : config.flattened()) {
     const std::string& path = value.first;
     const auto in = [&](std::string_view table) { return path.rfind(table, 0) == 0; };
-    if (path == "title" || path == "run.duration" || path == "start.file" || path == "check")
+    if (path == "title" || path == "run.duration" || path == "run.blow_up" ||
+        path == "start.file" || path == "check")
       continue;
+    if (in("run.until.")) continue;
     // Holding the centre of mass is another problem, not another solver.
     if (in("solver.") && path != "solver.hold_centre_of_mass") continue;
     if (in("output.") || in("check.")) continue;

@@ -83,6 +83,22 @@ std::vector<JsonObject> checks_json(const std::vector<CheckOutcome>& checks) {
   return list;
 }
 
+// One line on the target of [run] until; empty where there is none.
+template <int D>
+std::string target_text(const Simulation<D>& simulation, const Results& results) {
+  const auto& until = simulation.settings().until;
+  if (!until) return {};
+  const Scalar* scalar = results.find(until->observable);
+  return fmt::format("  {}: a standard error of {:g} of {} (now {})\n",
+                     simulation.stopped_at_target() ? "stopped early, the target is reached"
+                                                    : "the target of run.until was not reached",
+                     until->standard_error, until->observable,
+                     scalar == nullptr ? "not measured"
+                     : std::isnan(scalar->standard_error)
+                         ? "no estimate yet"
+                         : fmt::format("{:.3g}", scalar->standard_error));
+}
+
 }  // namespace
 
 std::vector<CheckOutcome> evaluate_checks(const std::vector<CheckSettings>& checks,
@@ -128,7 +144,8 @@ std::string with_error(double value, double standard_error) {
 
 template <int D>
 std::string summary_json(const Simulation<D>& simulation, const Results& results,
-                         const std::vector<CheckOutcome>& checks) {
+                         const std::vector<CheckOutcome>& checks,
+                         const std::optional<Failure>& failure) {
   const CaseSettings& settings = simulation.settings();
   const Clock& clock = simulation.clock();
   JsonObject observables;
@@ -145,9 +162,15 @@ std::string summary_json(const Simulation<D>& simulation, const Results& results
   json.set("steps", clock.step)
       .set("equilibration_steps", clock.equilibration_steps)
       .set("time", clock.time());
-  json.set("finished", clock.finished())
-      .set("interrupted", !clock.finished())
+  json.set("finished", clock.finished() && !failure)
+      .set("interrupted", !clock.finished() && !failure)
+      .set("stopped_at_target", simulation.stopped_at_target())
       .set("threads", threads());
+  if (failure)
+    json.set(failure->blew_up ? "blew_up" : "failed", JsonObject()
+                                                          .set("step", clock.step)
+                                                          .set("time", clock.time())
+                                                          .set("reason", failure->reason));
   json.set("wall_seconds", simulation.wall_seconds());
   json.set("phase_seconds", phases_json(simulation.dynamics().phases()));
   json.set("solver", solver_json(simulation));
@@ -172,6 +195,7 @@ std::string report_text(const Simulation<D>& simulation, const Results& results,
       simulation.scene().particles().size() - free_particles(simulation), settings.integrator.name,
       clock.dt, clock.step, clock.time(), clock.finished() ? "" : ", interrupted");
   out += method_text(simulation);
+  out += target_text(simulation, results);
   out += "\n" + fluid_text(simulation.scene(), results);
   out += "\nMeasured (standard error by block averaging)\n";
   for (const Scalar& scalar : results.scalars)
@@ -197,9 +221,11 @@ std::string report_text(const Simulation<D>& simulation, const Results& results,
 }
 
 template std::string summary_json<2>(const Simulation<2>&, const Results&,
-                                     const std::vector<CheckOutcome>&);
+                                     const std::vector<CheckOutcome>&,
+                                     const std::optional<Failure>&);
 template std::string summary_json<3>(const Simulation<3>&, const Results&,
-                                     const std::vector<CheckOutcome>&);
+                                     const std::vector<CheckOutcome>&,
+                                     const std::optional<Failure>&);
 template std::string report_text<2>(const Simulation<2>&, const Results&,
                                     const std::vector<CheckOutcome>&);
 template std::string report_text<3>(const Simulation<3>&, const Results&,

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <limits>
 #include <optional>
 
+#include "odpd/app/blow_up.h"
 #include "odpd/app/dry_run.h"
 #include "odpd/app/interrupt.h"
 #include "odpd/app/live_line.h"
@@ -35,13 +34,38 @@ bool same_directory(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, ignored);
 }
 
-// Explicit conservative forces are accurate to dt of about 0.2 to 0.4 gamma/a.
+// The command that goes on from the last sound configuration with a smaller step.
 template <int D>
-double longest_sensible_step(const SceneSettings<D>& scene) {
-  double limit = std::numeric_limits<double>::infinity();
-  for (const DpdParameters& p : scene.pairs)
-    if (p.a > 0.0) limit = std::min(limit, 0.4 * p.gamma / p.a);
-  return limit;
+std::string command_to_go_on(const RunOptions& options, const Simulation<D>& simulation,
+                             const fs::path& directory) {
+  const auto quoted = [](const std::string& word) {
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+  };
+  const fs::path start = fs::absolute(directory / "last_good.h5").lexically_normal();
+  std::string command = "odpd run " + quoted(options.case_path.string());
+  for (const std::string& set : options.overrides) command += " --set " + quoted(set);
+  command += fmt::format(" --set integrator.dt={} --set start.from=file --set {}",
+                         simulation.smaller_step(),
+                         quoted(fmt::format("start.file=\"{}\"", start.string())));
+  return command + " --out " + quoted(directory.string() + "-smaller-step");
+}
+
+// The way out after a step that failed or a state that has blown up: what is left, and how to go on.
+template <int D>
+[[noreturn]] void give_up(const RunOptions& options, const Simulation<D>& simulation,
+                          RunOutput<D>& output, const SolverError& error) {
+  const bool blew_up = dynamic_cast<const BlowUpError*>(&error) != nullptr;
+  output.salvage();
+  output.leave_last_good();
+  write_file_atomically(
+      output.directory() / "summary.json",
+      summary_json(simulation, simulation.results(), {}, Failure{blew_up, error.what()}));
+  if (!blew_up || simulation.last_good().id.empty()) throw;
+  throw BlowUpError(fmt::format(
+      "{}. last_good.h5 holds the state at t = {:.6g}; go on from it with: {}", error.what(),
+      simulation.last_good().time, command_to_go_on(options, simulation, output.directory())));
 }
 
 template <int D>
@@ -75,7 +99,8 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
   }
   if (const std::string warning = simulation.integrator().warning(); !warning.empty())
     log_warning(warning);
-  if (const double limit = longest_sensible_step(simulation.scene().settings());
+  // Explicit conservative forces are accurate to one to two times this limit.
+  if (const double limit = 2.0 * explicit_step_limit(simulation.scene().settings());
       simulation.integrator().in_time() && settings.clock.dt > limit)
     log_warning(
         fmt::format("integrator.dt = {} is beyond 0.4 gamma/a = {:.3g}, where the explicit "
@@ -106,6 +131,8 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
       output.after_step();
       line.update();
     });
+  } catch (const SolverError& e) {
+    give_up(options, simulation, output, e);
   } catch (...) {
     output.salvage();
     throw;

@@ -60,7 +60,14 @@ void RunOutput<D>::begin() {
     columns.insert(columns.begin(), "time");
     series_.back() = std::make_unique<SeriesFile>(series_path(k), columns);
   }
-  if (simulation_.settings().output.trajectory_every > 0) trajectory_.append(simulation_.frame());
+  checkpoint();  // there is a state to go back to from the first step on
+  first_frame();
+}
+
+template <int D>
+void RunOutput<D>::first_frame() {
+  if (simulation_.settings().output.trajectory_every > 0 && simulation_.clock().step == 0)
+    trajectory_.append(simulation_.frame());
 }
 
 template <int D>
@@ -80,6 +87,7 @@ void RunOutput<D>::resume(CheckpointReader& in) {
   for (std::size_t k = 0; k < times.size(); ++k)
     vtk_frames_.emplace_back(times[k], fmt::format("frames/{:010}.vtp", steps.at(k)));
   write_file_atomically(directory_ / "case.toml", portable_case(config_));
+  first_frame();
 }
 
 template <int D>
@@ -114,6 +122,7 @@ void RunOutput<D>::write_vtk_frame() {
 
 template <int D>
 void RunOutput<D>::checkpoint() {
+  simulation_.judge();
   std::vector<std::int64_t> bytes, steps;
   std::vector<double> times;
   for (auto& series : series_) {
@@ -143,6 +152,21 @@ void RunOutput<D>::salvage() noexcept {
     trajectory_.close_segment();
   } catch (const std::exception& e) {
     log_warning(fmt::format("and the output so far could not all be written: {}", e.what()));
+  }
+}
+
+template <int D>
+void RunOutput<D>::leave_last_good() noexcept {
+  try {
+    checkpoint();
+  } catch (const std::exception&) {
+    // This state is not sound: the checkpoint stays that of one that was.
+  }
+  try {
+    if (!simulation_.last_good().id.empty())
+      trajectory_.write_single("last_good.h5", simulation_.last_good());
+  } catch (const std::exception& e) {
+    log_warning(fmt::format("and the last sound configuration could not be written: {}", e.what()));
   }
 }
 

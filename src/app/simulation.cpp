@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <map>
 
 #include "odpd/core/error.h"
@@ -56,7 +58,8 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings)
       dynamics_(scene_.box(), scene_.particles(), scene_.model(), scene_,
                 make_solver(settings_.solver), dynamics_of(settings_.dynamics, scene_)),
       integrator_(make_integrator<D>(settings_.integrator)),
-      observers_(make_observers(config, scene_, clock_, integrator_->in_time())) {
+      observers_(make_observers(config, scene_, clock_, integrator_->in_time())),
+      watch_of_state_(scene_, settings_.blow_up) {
   if (const std::string why = mass_objection(settings_.integrator.name, scene_.settings().mass);
       !why.empty())
     config.table("integrator").fail("name", why);
@@ -68,31 +71,104 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings)
 // A misspelt observable should not come out at the end of a long run.
 template <int D>
 void Simulation<D>::check_observables(const Config& config) const {
+  for (const Config& check : config.tables("check")) check_observable(check);
+  if (!settings_.until) return;
+  const Config until = config.table("run").table("until");
+  if (settings_.until->observable == "alarm_crossings")
+    until.fail("observable",
+               "'alarm_crossings' is a count without an error: name what is measured");
+  check_observable(until);
+}
+
+template <int D>
+void Simulation<D>::check_observable(const Config& entry) const {
   std::vector<std::string> names{"energy_per_particle", "pressure", "config_temperature",
                                  "kinetic_temperature", "diffusion"};
   if (!scene_.settings().walls.empty()) names.push_back("alarm_crossings");
   for (const auto& observer : observers_) names.push_back(observer->settings().name);
-  for (const Config& check : config.tables("check")) {
-    const std::string observable = check.text("observable");
-    const std::string stem = observable.substr(0, observable.find('.'));
-    if (std::find(names.begin(), names.end(), stem) != names.end()) continue;
-    const std::string near = nearest_name(stem, names);
-    check.fail(
-        "observable",
-        fmt::format("nothing in this case measures '{}'{}; names start with one of {}", observable,
-                    near.empty() ? "" : fmt::format(", did you mean '{}'?", near),
-                    fmt::join(names, ", ")));
-  }
+  const std::string observable = entry.text("observable");
+  const std::string stem = observable.substr(0, observable.find('.'));
+  if (std::find(names.begin(), names.end(), stem) != names.end()) return;
+  const std::string near = nearest_name(stem, names);
+  entry.fail("observable",
+             fmt::format("nothing in this case measures '{}'{}; names start with one of {}",
+                         observable, near.empty() ? "" : fmt::format(", did you mean '{}'?", near),
+                         fmt::join(names, ", ")));
 }
 
-// The integrator's step; what goes wrong in it is told with the step's number.
+// The integrator's step; what goes wrong in it leaves the state as it was.
 template <int D>
 const StepRecord<D>& Simulation<D>::named_step() {
+  const SolverStatistics before = dynamics_.statistics();
   try {
     return integrator_->step(dynamics_, clock_);
   } catch (const SolverError& e) {
-    throw SolverError(fmt::format("step {}: {}", clock_.step, e.what()));
+    dynamics_.statistics() = before;
+    explain(e);
   }
+}
+
+// With the number of the step, and whether the state it met, or the step itself, is what has blown up.
+template <int D>
+void Simulation<D>::explain(const SolverError& error) {
+  const std::string what = fmt::format("step {}: {}", clock_.step, error.what());
+  judged_step_ = -1;  // the step may have reordered memory
+  try {
+    judge();
+  } catch (const BlowUpError& state) {
+    throw BlowUpError(fmt::format("{}; its {}", what, state.what()), state.particle());
+  }
+  const auto* blow_up = dynamic_cast<const BlowUpError*>(&error);
+  if (blow_up == nullptr) throw SolverError(what);
+  throw BlowUpError(fmt::format("{}: the run has blown up. {}", what,
+                                watch_of_state_.cure(settings_.integrator, judged_, clock_.dt,
+                                                     blow_up->particle())),
+                    blow_up->particle());
+}
+
+template <int D>
+void Simulation<D>::judge() {
+  if (judged_step_ == clock_.step) return;
+  const std::int64_t fastest = watch_of_state_.fastest();
+  const Particles<D>& particles = scene_.particles();
+  std::string why;
+  try {
+    dynamics_.evaluate(particles.position, clock_.time(), judged_);
+    why = watch_of_state_.judge(judged_, clock_.dt);
+  } catch (const BlowUpError& e) {
+    why = e.what();
+    judged_.network = PairNetwork<D>{};
+  }
+  if (why.empty()) {
+    judged_step_ = clock_.step;
+    last_good_ = frame();
+    return;
+  }
+  std::string moved;
+  if (fastest >= 0) {
+    const Vec<D>& v = particles.velocity[static_cast<std::size_t>(
+        particles.index_of_id()[static_cast<std::size_t>(fastest)])];
+    moved = fmt::format(", and particle {} moved furthest in the last step, by {:.3g}", fastest,
+                        clock_.dt * std::sqrt(dot(v, v)));
+  }
+  throw BlowUpError(
+      fmt::format("state after {} steps (t = {:.6g}) has blown up: {}{}. {}", clock_.step,
+                  clock_.time(), why, moved,
+                  watch_of_state_.cure(settings_.integrator, judged_, clock_.dt, fastest)),
+      fastest);
+}
+
+// Looked at 16 to 32 times per doubling of the measured steps: a matter of their number alone.
+template <int D>
+void Simulation<D>::stop_at_target() {
+  if (!settings_.until || !clock_.measuring()) return;
+  const auto measured = static_cast<std::uint64_t>(clock_.measured_steps());
+  if (measured % std::max<std::uint64_t>(1, std::bit_floor(measured) / 16) != 0) return;
+  const Results now = results();
+  const Scalar* scalar = now.find(settings_.until->observable);
+  if (scalar == nullptr || !(scalar->standard_error <= settings_.until->standard_error)) return;
+  stopped_at_target_ = true;
+  clock_.total_steps = clock_.step;
 }
 
 template <int D>
@@ -124,8 +200,11 @@ void Simulation<D>::run(const std::function<bool()>& stop,
                         const std::function<void()>& after_step) {
   while (!clock_.finished() && !stop()) {
     step();
+    if (clock_.step % BlowUpWatch<D>::interval == 0) judge();
+    stop_at_target();
     after_step();
   }
+  judge();
 }
 
 template <int D>
@@ -178,6 +257,7 @@ void Simulation<D>::save(CheckpointWriter& out) const {
   run.write_text("solver_problem", s.problem);
   scene_.particles().save(out.component("particles"));
   integrator_->save(out.component("integrator"));
+  watch_of_state_.save(out.component("blow_up"));
   for (std::size_t k = 0; k < observers_.size(); ++k)
     observers_[k]->save(out.component(fmt::format("observer_{}", k)));
 }
@@ -189,7 +269,8 @@ void Simulation<D>::load(CheckpointReader& in) {
   if (const std::string what = difference(saved, config_); !what.empty())
     throw ConfigError(fmt::format(
         "the checkpoint belongs to another case: {}. A restart may change run.duration, "
-        "[solver] (but not hold_centre_of_mass), [output], [[check]] and the number of threads, "
+        "run.until, run.blow_up, [solver] (but not hold_centre_of_mass), [output], [[check]] and "
+        "the number of threads, "
         "nothing else",
         what));
   const std::vector<std::int64_t> counts = run.read_integers("counts");
@@ -219,8 +300,10 @@ void Simulation<D>::load(CheckpointReader& in) {
         scene_.particles().size(), expected));
   dynamics_.particles_replaced();
   integrator_->load(in.component("integrator"));
+  watch_of_state_.load(in.component("blow_up"));
   for (std::size_t k = 0; k < observers_.size(); ++k)
     observers_[k]->load(in.component(fmt::format("observer_{}", k)));
+  stop_at_target();  // continued with a target that it had reached
 }
 
 template class Simulation<2>;

@@ -44,10 +44,9 @@ template <int D>
 void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage<D>& stage) {
   for (std::size_t i = 0; i < positions.size(); ++i)
     if (!finite(positions[i]))
-      throw SolverError(fmt::format(
-          "the position of particle {} at t = {:.6g} is not finite: continue from the last "
-          "checkpoint, with a smaller integrator.dt",
-          particles_.id[i], time));
+      throw BlowUpError(fmt::format("the position of particle {} at t = {:.6g} is not finite",
+                                    particles_.id[i], time),
+                        particles_.id[i]);
   stage.time = time;
   stage.position.assign(positions.begin(), positions.end());
   {
@@ -185,8 +184,8 @@ void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights
   stage.velocity = velocities(stage, guess);
   for (std::size_t i = 0; i < stage.velocity.size(); ++i)
     if (!finite(stage.velocity[i]))
-      throw SolverError(fmt::format(
-          "the velocity of particle {} is not finite; reduce integrator.dt", particles_.id[i]));
+      throw BlowUpError(fmt::format("the velocity of particle {} is not finite", particles_.id[i]),
+                        particles_.id[i]);
 }
 
 template <int D>
@@ -216,11 +215,11 @@ void Dynamics<D>::check_paths(const std::vector<Vec<D>>& velocity, double dt) co
     for (int c = 0; c < D; ++c) {
       const double path = dt * velocity[i][c];
       if (std::abs(path) < 0.5 * box_.size[c]) continue;
-      throw SolverError(
+      throw BlowUpError(
           fmt::format("particle {} would move {:.3g} in direction {}, more than half the "
-                      "box ({:.3g}): the run has blown "
-                      "up; reduce integrator.dt (explicit repulsion wants dt below 0.2 gamma/a)",
-                      particles_.id[i], path, "xyz"[c], box_.size[c]));
+                      "box ({:.3g})",
+                      particles_.id[i], path, "xyz"[c], box_.size[c]),
+          particles_.id[i]);
     }
 }
 

@@ -73,10 +73,7 @@ const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   const bool lagged = !last_velocity_.empty();
   const std::vector<double> last_v = lagged ? from_identity(dynamics, last_velocity_) : v;
   const std::vector<double> last_force = lagged ? from_identity(dynamics, last_force_) : force;
-  if (order_ > 1) {
-    last_velocity_ = by_identity(dynamics, v);
-    last_force_ = by_identity(dynamics, force);
-  }
+  const std::vector<double> v_before = v;
 
   PhaseTimer timer(dynamics.phases(), Phase::solve);
   std::vector<std::array<double, static_cast<std::size_t>(D * D)>> blocks(
@@ -99,6 +96,10 @@ const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   }
   record.v_mid = dynamics.velocities(record.start, q_mid);
   record.alarm_crossings += dynamics.move(record.v_mid, clock.dt);
+  if (order_ > 1) {
+    last_velocity_ = by_identity(dynamics, v_before);
+    last_force_ = by_identity(dynamics, force);
+  }
   dynamics.set_end_velocity(v);
   return record;
 }

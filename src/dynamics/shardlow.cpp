@@ -130,7 +130,6 @@ const StepRecord<D>& Shardlow<D>::step(Dynamics<D>& dynamics, const Clock& clock
   this->begin(dynamics, clock);
   std::vector<Vec<D>> velocity = dynamics.velocities(record.start, dynamics.end_velocity());
   if (begun_) kick(dynamics, 0.5 * clock.dt, velocity);
-  begun_ = true;
   record.start.velocity = velocity;
   record.v_start = velocity;
   {
@@ -141,6 +140,7 @@ const StepRecord<D>& Shardlow<D>::step(Dynamics<D>& dynamics, const Clock& clock
   kick(dynamics, 0.5 * clock.dt, velocity);
   record.v_mid = velocity;
   record.alarm_crossings += dynamics.move(record.v_mid, clock.dt);
+  begun_ = true;
   std::vector<double> q;
   dynamics.dofs().gather(velocity, q);
   dynamics.set_end_velocity(q);

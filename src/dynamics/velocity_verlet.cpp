@@ -27,8 +27,8 @@ const StepRecord<D>& VelocityVerlet<D>::step(Dynamics<D>& dynamics, const Clock&
     predicted[k] = v[k] + 2.0 * lambda_ * half_kick * force[k];
   }
   record.v_mid = dynamics.velocities(record.start, half_way);
-  half_way_ = by_identity(dynamics, half_way);
   record.alarm_crossings += dynamics.move(record.v_mid, clock.dt);
+  half_way_ = by_identity(dynamics, half_way);
   dynamics.set_end_velocity(predicted);
   return record;
 }

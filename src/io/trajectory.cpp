@@ -110,6 +110,12 @@ void TrajectorySegments::append(const Frame& frame) {
   image_->append_row(group + "/box/edges/value", frame.box_size);
 }
 
+void TrajectorySegments::write_single(const std::string& name, const Frame& frame) const {
+  TrajectorySegments single(directory_, case_text_, version_, title_);
+  single.append(frame);
+  single.image_->save(directory_ / name);
+}
+
 void TrajectorySegments::close_segment() {
   if (image_ == nullptr) return;
   image_->save(directory_ / segment_name(segment_));

@@ -149,11 +149,18 @@ void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<
                  Particles<D>& particles) {
   std::vector<Vec<D>> points;
   std::vector<std::int32_t> species = settings.start_species;
+  const double volume = Box<D>{high - low, {}}.volume();
   if (settings.start == StartKind::file) {
     check_start_positions(settings);
     points = settings.start_positions;
+    const std::int64_t said =
+        settings.count > 0 ? settings.count : std::llround(settings.start_density * volume);
+    if (said > 0 && said != static_cast<std::int64_t>(points.size()))
+      throw ConfigError(fmt::format(
+          "{}: the start file holds {} fluid particles, but fluid.{} asks for {}: make them agree, "
+          "or leave that key out",
+          settings.start_file, points.size(), settings.count > 0 ? "count" : "density", said));
   } else {
-    const double volume = Box<D>{high - low, {}}.volume();
     const std::int64_t count =
         settings.count > 0 ? settings.count : std::llround(settings.density * volume);
     if (count < 1) throw ConfigError("the fluid has no particles: raise fluid.density or the box");

@@ -100,18 +100,18 @@ template <int D>
 void read_amount(const Config& fluid, SceneSettings<D>& scene) {
   if (fluid.has("density") && fluid.has("count"))
     fluid.fail("count", "give density or count, never both");
-  for (const char* key : {"density", "count", "rho"})
-    if (scene.start == StartKind::file && fluid.has(key))
-      fluid.fail(key,
-                 "the start file says how many particles there are: leave this "
-                 "key out, or set start.from");
   if (fluid.has("count")) {
     scene.count = fluid.integer("count");
     if (scene.count < 1) fluid.fail("count", "must be positive");
-  } else if (fluid.has("rho") && !fluid.has("density")) {
-    scene.density = density_of_rho(fluid);
-  } else if (scene.start != StartKind::file) {
-    scene.density = fluid.positive("density");
+    return;
+  }
+  // What the start file must hold, or how many particles to place.
+  const bool from_file = scene.start == StartKind::file;
+  double& density = from_file ? scene.start_density : scene.density;
+  if (fluid.has("rho") && !fluid.has("density")) {
+    density = density_of_rho(fluid);
+  } else if (!from_file || fluid.has("density")) {
+    density = fluid.positive("density");
   }
 }
 

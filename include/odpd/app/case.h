@@ -2,6 +2,7 @@
 // A case file as the program sees it: what to integrate, with which solver, for how long, what to write and to check.
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +34,12 @@ struct CheckSettings {
   std::string source;
 };
 
+/// [run] until: the run ends once the standard error of an observable is this small.
+struct TargetSettings {
+  std::string observable;
+  double standard_error = 0.0;
+};
+
 struct CaseSettings {
   std::string name;  ///< of the case directory or file
   std::string title;
@@ -43,6 +50,8 @@ struct CaseSettings {
   DynamicsSettings dynamics;
   OutputSettings output;
   std::vector<CheckSettings> checks;
+  std::optional<TargetSettings> until;
+  double blow_up = 10.0;  ///< multiple of app/blow_up.h
 };
 
 /// Opens a case: a directory that holds case.toml, or a .toml file. Throws ConfigError.
@@ -57,7 +66,7 @@ void read_start_file(SceneSettings<D>& scene);
 
 /// The resolved case as TOML, its start file absolute: it runs from whatever directory it is put in.
 std::string portable_case(const Config& config);
-/// The values that a restart must find unchanged: all but title, run.duration, start.file (whose particles are in the
+/// The values that a restart must find unchanged: all but title, run.duration, run.until, run.blow_up, start.file (whose particles are in the
 /// checkpoint), [solver] (but not solver.hold_centre_of_mass), [output] and [[check]].
 std::vector<std::pair<std::string, std::string>> fixed_values(const Config& config);
 

@@ -1,5 +1,6 @@
 #pragma once
 // The end of a run: what was asked, what came out, what was expected, and where the time went.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,15 @@ struct CheckOutcome {
 std::vector<CheckOutcome> evaluate_checks(const std::vector<CheckSettings>& checks,
                                           const Results& results, std::int64_t alarm_crossings);
 
+/// `failure`: what ended the run, empty for none; then under "blew_up" (or "failed", for a solver) with step and time.
+struct Failure {
+  bool blew_up = false;
+  std::string reason;
+};
 template <int D>
 std::string summary_json(const Simulation<D>& simulation, const Results& results,
-                         const std::vector<CheckOutcome>& checks);
+                         const std::vector<CheckOutcome>& checks,
+                         const std::optional<Failure>& failure = {});
 template <int D>
 std::string report_text(const Simulation<D>& simulation, const Results& results,
                         const std::vector<CheckOutcome>& checks);

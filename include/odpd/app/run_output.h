@@ -6,6 +6,7 @@
 //   *.svg, *.png, *.gp   pictures and their gnuplot scripts
 //   trajectory.NNNN.h5   H5MD segments               particles.pvd, frames/*.vtp   for ParaView
 //   checkpoint.h5        everything needed to continue, bit for bit
+//   last_good.h5         after a blow-up: the last configuration that was judged sound
 //
 // A kill loses nothing but what came after the last checkpoint: files are written whole and renamed, and series are cut
 // back to the checkpoint at a restart.
@@ -37,10 +38,14 @@ class RunOutput {
   void resume(CheckpointReader& in);
   /// Series, trajectory, VTK and checkpoint as they are due after the step just done.
   void after_step();
-  /// A checkpoint of this moment, with all files flushed up to it first.
+  /// A checkpoint of this moment, with all files flushed up to it first. Throws BlowUpError instead where the state has
+  /// blown up.
   void checkpoint();
   /// Writes what is buffered, as far as possible: for the way out after an error.
   void salvage() noexcept;
+  /// After a step that failed or a state that has blown up: a checkpoint of this moment where its state is sound, and
+  /// the last sound configuration in last_good.h5, as far as possible.
+  void leave_last_good() noexcept;
   /// The last frame for ParaView and the last checkpoint.
   void close();
   /// Tables and pictures.
@@ -50,6 +55,7 @@ class RunOutput {
 
  private:
   std::filesystem::path series_path(std::size_t k) const;
+  void first_frame();
   void write_vtk_frame();
 
   std::filesystem::path directory_;

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "odpd/analysis/observer.h"
+#include "odpd/app/blow_up.h"
 #include "odpd/app/case.h"
+#include "odpd/core/error.h"
 #include "odpd/dynamics/integrator.h"
 #include "odpd/io/checkpoint_file.h"
 #include "odpd/io/frame.h"
@@ -32,8 +34,19 @@ class Simulation {
 
   /// One step and the measurements that are due after it.
   const StepRecord<D>& step();
-  /// Steps until the clock has run out or `stop()` says so; `after_step` writes what is due.
+  /// Steps until the clock has run out, the target of [run] until is reached, or `stop()` says so; `after_step` writes
+  /// what is due. Throws BlowUpError as `judge` does.
   void run(const std::function<bool()>& stop, const std::function<void()>& after_step);
+
+  /// Judges the state of this moment and, when it passes, remembers it. Throws BlowUpError with cause and remedy.
+  void judge();
+  /// The last state that passed; empty when none has.
+  const Frame& last_good() const { return last_good_; }
+  /// A time step to go on with after a blow-up.
+  double smaller_step() const {
+    return watch_of_state_.smaller_step(settings_.integrator, judged_, clock_.dt);
+  }
+  bool stopped_at_target() const { return stopped_at_target_; }
 
   Frame frame() const;
   Results results() const;
@@ -49,7 +62,10 @@ class Simulation {
 
  private:
   const StepRecord<D>& named_step();
+  [[noreturn]] void explain(const SolverError& error);
   void check_observables(const Config& config) const;
+  void check_observable(const Config& entry) const;
+  void stop_at_target();
 
   Config config_;
   CaseSettings settings_;
@@ -60,6 +76,11 @@ class Simulation {
   std::vector<std::unique_ptr<Observer<D>>> observers_;
   std::int64_t alarm_crossings_ = 0;
   bool alarmed_ = false;  // the user was told once
+  BlowUpWatch<D> watch_of_state_;
+  Stage<D> judged_;  // the state that was judged last
+  std::int64_t judged_step_ = -1;
+  Frame last_good_;
+  bool stopped_at_target_ = false;
   double earlier_seconds_ = 0.0;
   Stopwatch watch_;
 };

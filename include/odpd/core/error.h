@@ -1,6 +1,7 @@
 #pragma once
 // Errors the library throws. Each message names what was wrong, where, and the remedy;
 // only the program's main turns one into text on stderr and an exit code.
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -27,6 +28,18 @@ class ConfigError : public Error {
 class SolverError : public Error {
  public:
   explicit SolverError(const std::string& message) : Error(message, 2) {}
+};
+
+/// The particles' state has left the physics: one moves beyond half the box, a number is not finite, all are too hot.
+class BlowUpError : public SolverError {
+ public:
+  /// particle: identity of the one that shows it, -1 for none.
+  explicit BlowUpError(const std::string& message, std::int64_t particle = -1)
+      : SolverError(message), particle_(particle) {}
+  std::int64_t particle() const { return particle_; }
+
+ private:
+  std::int64_t particle_;
 };
 
 /// A file could not be read or written (exit code 3).

@@ -38,7 +38,8 @@ class Integrator {
   virtual std::string warning() const { return {}; }
   /// What it did, for the report of a scheme that solves nothing.
   virtual std::string summary() const { return {}; }
-  /// One step of clock.dt from clock.step. The record stays valid until the next step.
+  /// One step of clock.dt from clock.step. The record stays valid until the next step. A step that throws has moved
+  /// nothing and carries what it carried before.
   virtual const StepRecord<D>& step(Dynamics<D>& dynamics, const Clock& clock) = 0;
   /// Arrays carried from step to step (none for schemes that only know r and v).
   virtual void save(StateWriter&) const {}

@@ -22,6 +22,8 @@ class TrajectorySegments {
                      std::string title);
   /// All frames of a segment have the same particles.
   void append(const Frame& frame);
+  /// Writes one frame by itself, as a file of that name in the directory.
+  void write_single(const std::string& name, const Frame& frame) const;
   /// Writes the open segment (nothing when it is empty) and starts a new one.
   void close_segment();
   /// Number of the open segment: state for a restart.

@@ -49,6 +49,7 @@ struct SceneSettings {
   PhysicalInputs physical_inputs;  ///< that [fluid] gives in place of DPD parameters; may be none
   std::int64_t count = 0;          ///< fluid particles; 0: by density
   double density = 4.0;            ///< fluid particles per volume between the walls
+  double start_density = 0.0;      ///< what the start file must hold, as `count` where > 0; 0: any
   double mass = 0.0;               ///< of every fluid particle
   double zeta_0 = 0.0;             ///< uniform drag on every fluid particle (mass/time)
   std::vector<WallSettings<D>> walls;

@@ -1,0 +1,255 @@
+#include "odpd/app/blow_up.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "odpd/analysis/thermo.h"
+#include "odpd/core/parallel.h"
+#include "odpd/operator/edge_sums.h"
+
+namespace odpd {
+
+namespace {
+
+// Energy per particle of a random arrangement: n/2 int u dV, with int_0^1 x^(d-1) (1-x)^(s_bar+1) dx a beta function.
+template <int D>
+double random_energy(const DpdParameters& p, double density) {
+  const double sphere = 2.0 * std::pow(std::numbers::pi, 0.5 * D) / std::tgamma(0.5 * D);
+  const double beta = std::exp(std::lgamma(D) + std::lgamma(p.s_bar + 2.0) -
+                               std::lgamma(static_cast<double>(D) + p.s_bar + 2.0));
+  return 0.5 * density * sphere * p.a * std::pow(p.cutoff, D + 1) / (p.s_bar + 1.0) * beta;
+}
+
+double two_digits_down(double x) {
+  const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
+  return std::stod(fmt::format("{:.2g}", unit * std::floor(x / unit * (1.0 + 1e-12))));
+}
+
+}  // namespace
+
+template <int D>
+double explicit_step_limit(const SceneSettings<D>& scene) {
+  double limit = std::numeric_limits<double>::infinity();
+  for (const DpdParameters& p : scene.pairs) {
+    if (p.a == 0.0) continue;
+    const double compliance = p.cutoff / (p.a * std::max(1.0, p.s_bar));
+    limit = std::min(
+        limit, std::max(0.2 * p.gamma * compliance, 0.1 * std::sqrt(scene.mass * compliance)));
+  }
+  return limit;
+}
+
+template <int D>
+struct BlowUpWatch<D>::Pairs {
+  double count = 0.0, jumped = 0.0;
+  double slip_squared = 0.0;  // of the end velocities
+};
+
+template <int D>
+BlowUpWatch<D>::BlowUpWatch(const Scene<D>& scene, double multiple)
+    : scene_(scene), multiple_(multiple) {
+  double fastest_squared = 0.0;
+  for (const auto& wall : scene.settings().walls)
+    fastest_squared = std::max(fastest_squared, dot(wall.velocity, wall.velocity));
+  if (fastest_squared > 0.0)
+    flow_slip_ = 2.0 * std::sqrt(fastest_squared * scene.model().cutoff() / fluid_depth());
+}
+
+template <int D>
+double BlowUpWatch<D>::fluid_depth() const {
+  double depth = 0.0;
+  for (const auto& wall : scene_.settings().walls)
+    depth = std::max(depth, scene_.fluid_high()[wall.axis] - scene_.fluid_low()[wall.axis]);
+  return depth;
+}
+
+template <int D>
+auto BlowUpWatch<D>::sum_pairs(const Stage<D>& stage, double dt) const -> Pairs {
+  const Particles<D>& particles = scene_.particles();
+  const PairNetwork<D>& network = stage.network;
+  Pairs sum;
+  for (std::size_t k = 0; k < network.i.size(); ++k) {
+    const auto i = static_cast<std::size_t>(network.i[k]),
+               j = static_cast<std::size_t>(network.j[k]);
+    if (!(network.u[k] > 0.0) || !particles.is_free(i) || !particles.is_free(j)) continue;
+    sum.count += 1.0;
+    const Vec<D> path = dt * (particles.velocity[i] - particles.velocity[j]);
+    if (dot(path, path) > std::pow(scene_.model().cutoff(), 2)) sum.jumped += 1.0;
+    if (particles.end_velocity.empty()) continue;
+    const Vec<D> slip = particles.end_velocity[i] - particles.end_velocity[j];
+    sum.slip_squared += dot(slip, slip);
+  }
+  return sum;
+}
+
+template <int D>
+std::string BlowUpWatch<D>::judge_temperatures(const Stage<D>& stage, const Pairs& pairs,
+                                               const std::vector<double>& force_squared,
+                                               const std::vector<double>& laplacian) {
+  const SceneSettings<D>& s = scene_.settings();
+  const auto n = static_cast<double>(scene_.particles().free_count());
+  const double kT = scene_.largest_kT();
+  if (s.mass > 0.0 && pairs.count > 0.0) {
+    const double freedom = D * std::min(pairs.count, n);
+    const double kinetic = s.mass * pairs.slip_squared / (2.0 * D * pairs.count);
+    const double bound =
+        multiple_ * (kT + s.mass * flow_slip_ * flow_slip_) * (1.0 + 10.0 / freedom);
+    if (kinetic > bound)
+      return fmt::format(
+          "the kinetic temperature of neighbours, {:.3g}, is more than {:.3g}, with kT = {} and "
+          "run.blow_up = {}",
+          kinetic, bound, kT, multiple_);
+  }
+  double a = 0.0, gamma = 0.0;
+  for (const DpdParameters& p : s.pairs) {
+    a = std::max(a, p.a);
+    gamma = std::max(gamma, p.gamma + p.gamma_perp);
+  }
+  if (!(a > 0.0) || !(kT > 0.0)) return {};
+  double squares = 0.0;
+  for (const double x : laplacian) squares += x * x;
+  const double contacts = 2.0 * static_cast<double>(stage.network.size()) / n;
+  const double drag =
+      contacts * gamma * flow_slip_ + std::sqrt(dot(s.body_force, s.body_force)) * fluid_depth() *
+                                          std::pow(n / scene_.fluid_volume(), 1.0 / D);
+  const double force = fixed_sum(force_squared), curvature = fixed_sum(laplacian);
+  const double scale = kT * (std::max(curvature, 0.0) + 3.0 * std::sqrt(squares)) + n * drag * drag;
+  const bool sound = force <= multiple_ * scale;
+  if (!sound && ordered_)
+    return fmt::format(
+        "the configurational temperature {} (kT = {}, run.blow_up = {}): the particles lie as if "
+        "thrown "
+        "there at random",
+        curvature > 0.0
+            ? fmt::format("is {:.3g}", force / curvature)
+            : std::string("has no value, as the mean curvature of the energy is negative"),
+        kT, multiple_);
+  ordered_ = ordered_ || sound;
+  return {};
+}
+
+template <int D>
+std::string BlowUpWatch<D>::judge(const Stage<D>& stage, double dt) {
+  const SceneSettings<D>& s = scene_.settings();
+  const auto n = static_cast<double>(scene_.particles().free_count());
+  const double kT = scene_.largest_kT();
+  std::vector<double> force_squared, laplacian;
+  double wall_energy = 0.0;
+  configurational_terms(scene_, scene_.particles(), stage, force_squared, laplacian, wall_energy);
+  const double energy = (fixed_sum(stage.network.u) + wall_energy) / n;
+  if (!std::isfinite(energy)) return "the energy is not finite";
+  if (start_energy_ < 0.0) {
+    start_energy_ = energy;
+    for (const DpdParameters& p : s.pairs)
+      start_energy_ = std::max(start_energy_, random_energy<D>(p, n / scene_.fluid_volume()));
+  }
+  const double bound = multiple_ * (start_energy_ + D * kT +
+                                    std::sqrt(dot(s.body_force, s.body_force)) * fluid_depth());
+  if (energy > bound)
+    return fmt::format(
+        "the energy per particle, {:.4g}, is more than {:.4g}, with run.blow_up = {}", energy,
+        bound, multiple_);
+  const Pairs pairs = sum_pairs(stage, dt);
+  const bool strong = std::any_of(s.pairs.begin(), s.pairs.end(), [&](const DpdParameters& p) {
+    return p.a > 0.0 && p.a * p.cutoff >= 10.0 * kT;
+  });
+  if (strong && 2.0 * pairs.jumped > pairs.count)
+    return fmt::format(
+        "{:.0f} % of the neighbours moved by more than a cutoff relative to each other in one step",
+        100.0 * pairs.jumped / pairs.count);
+  return judge_temperatures(stage, pairs, force_squared, laplacian);
+}
+
+template <int D>
+std::int64_t BlowUpWatch<D>::fastest() const {
+  const Particles<D>& particles = scene_.particles();
+  std::int64_t id = -1;
+  double most = 0.0;
+  for (std::size_t i = 0; i < particles.velocity.size(); ++i) {
+    const double square = dot(particles.velocity[i], particles.velocity[i]);
+    if (!particles.is_free(i) || !(square > most)) continue;
+    most = square;
+    id = particles.id[i];
+  }
+  return id;
+}
+
+template <int D>
+double BlowUpWatch<D>::friction_limit(const IntegratorSettings& integrator,
+                                      const Stage<D>& stage) const {
+  if (integrator.name != "setd" && integrator.name != "velocity-verlet")
+    return std::numeric_limits<double>::infinity();
+  std::vector<std::array<double, static_cast<std::size_t>(D * D)>> blocks(stage.position.size());
+  add_friction_blocks<D>(stage.network, blocks);
+  double trace = 0.0;
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    for (std::size_t c = 0; c < D && scene_.particles().is_free(i); ++c)
+      trace += blocks[i][c * (D + 1)];
+  const double friction =
+      trace / (D * static_cast<double>(scene_.particles().free_count())) + scene_.settings().zeta_0;
+  return scene_.settings().mass / friction;
+}
+
+template <int D>
+double BlowUpWatch<D>::smaller_step(const IntegratorSettings& integrator, const Stage<D>& stage,
+                                    double dt) const {
+  const double repulsion =
+      integrator.name == "implicit" ? dt : explicit_step_limit(scene_.settings());
+  return two_digits_down(std::min({0.5 * dt, repulsion, friction_limit(integrator, stage)}));
+}
+
+template <int D>
+std::string BlowUpWatch<D>::cure(const IntegratorSettings& integrator, const Stage<D>& stage,
+                                 double dt, std::int64_t particle) const {
+  std::vector<std::string> causes;
+  const double repulsion = explicit_step_limit(scene_.settings());
+  if (dt > repulsion && integrator.name != "implicit")
+    causes.push_back(
+        fmt::format("integrator.dt = {} is beyond {:.2g}, the limit of explicit repulsion (0.2 "
+                    "gamma/a of the stiffest pair)",
+                    dt, repulsion));
+  const double inertia = friction_limit(integrator, stage);
+  if (dt > inertia)
+    causes.push_back(
+        fmt::format("integrator.dt = {} is beyond {:.2g} = m/(friction of a particle), the limit "
+                    "of '{}' (not of "
+                    "trapezoidal or shardlow)",
+                    dt, inertia, integrator.name));
+  if (particle >= 0 && !stage.network.start.empty()) {
+    const auto i = scene_.particles().index_of_id()[static_cast<std::size_t>(particle)];
+    const std::size_t neighbours = stage.network.edges_of(i).size();
+    if (neighbours <= D)
+      causes.push_back(
+          fmt::format("particle {} has only {} neighbour(s) to hold it (a rattler), which "
+                      "fluid.rattler_friction, a "
+                      "higher fluid.density, fluid.mass above 0 or, at rest, fluid.zeta_0 cures",
+                      particle, neighbours));
+  }
+  if (causes.empty()) causes.emplace_back("integrator.dt is too large for this case");
+  std::string text = "Likely cause: " + causes.front();
+  for (std::size_t k = 1; k < causes.size(); ++k) text += "; and " + causes[k];
+  return text + fmt::format(". Remedy: integrator.dt = {}", smaller_step(integrator, stage, dt));
+}
+
+template <int D>
+void BlowUpWatch<D>::save(StateWriter& out) const {
+  out.write("start_energy", std::vector<double>{start_energy_});
+  out.write("ordered", std::vector<std::int64_t>{ordered_ ? 1 : 0});
+}
+
+template <int D>
+void BlowUpWatch<D>::load(const StateReader& in) {
+  start_energy_ = in.read_doubles("start_energy").at(0);
+  ordered_ = in.read_integers("ordered").at(0) != 0;
+}
+
+template double explicit_step_limit<2>(const SceneSettings<2>&);
+template double explicit_step_limit<3>(const SceneSettings<3>&);
+template class BlowUpWatch<2>;
+template class BlowUpWatch<3>;
+
+}  // namespace odpd
