@@ -45,7 +45,9 @@ std::string command_to_go_on(const RunOptions& options, const Simulation<D>& sim
   };
   const fs::path start = fs::absolute(directory / "last_good.h5").lexically_normal();
   std::string command = "odpd run " + quoted(options.case_path.string());
-  for (const std::string& set : options.overrides) command += " --set " + quoted(set);
+  for (const std::string& set : options.overrides)
+    if (!set.starts_with("integrator.dt=") && !set.starts_with("start."))
+      command += " --set " + quoted(set);
   command += fmt::format(" --set integrator.dt={} --set start.from=file --set {}",
                          simulation.smaller_step(),
                          quoted(fmt::format("start.file=\"{}\"", start.string())));

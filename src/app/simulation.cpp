@@ -116,7 +116,8 @@ void Simulation<D>::explain(const SolverError& error) {
   try {
     judge();
   } catch (const BlowUpError& state) {
-    throw BlowUpError(fmt::format("{}; its {}", what, state.what()), state.particle());
+    throw BlowUpError(fmt::format("{}. What the step met: {}", state.what(), error.what()),
+                      state.particle());
   }
   const auto* blow_up = dynamic_cast<const BlowUpError*>(&error);
   if (blow_up == nullptr) throw SolverError(what);
@@ -152,7 +153,7 @@ void Simulation<D>::judge() {
                         clock_.dt * std::sqrt(dot(v, v)));
   }
   throw BlowUpError(
-      fmt::format("state after {} steps (t = {:.6g}) has blown up: {}{}. {}", clock_.step,
+      fmt::format("step {} (t = {:.6g}): the run has blown up: {}{}. {}", clock_.step,
                   clock_.time(), why, moved,
                   watch_of_state_.cure(settings_.integrator, judged_, clock_.dt, fastest)),
       fastest);
