@@ -96,8 +96,8 @@ std::string BlowUpWatch<D>::judge_temperatures(const Stage<D>& stage, const Pair
   if (s.mass > 0.0 && pairs.count > 0.0) {
     const double freedom = D * std::min(pairs.count, n);
     const double kinetic = s.mass * pairs.slip_squared / (2.0 * D * pairs.count);
-    const double bound =
-        multiple_ * (kT + s.mass * flow_slip_ * flow_slip_) * (1.0 + 10.0 / freedom);
+    const double bound = multiple_ * (kT + start_energy_ + s.mass * flow_slip_ * flow_slip_) *
+                         (1.0 + 10.0 / freedom);
     if (kinetic > bound)
       return fmt::format(
           "the kinetic temperature of neighbours, {:.3g}, is more than {:.3g}, with kT = {} and "
@@ -208,10 +208,10 @@ std::string BlowUpWatch<D>::cure(const IntegratorSettings& integrator, const Sta
   std::vector<std::string> causes;
   const double repulsion = explicit_step_limit(scene_.settings());
   if (dt > repulsion && integrator.name != "implicit")
-    causes.push_back(
-        fmt::format("integrator.dt = {} is beyond {:.2g}, the limit of explicit repulsion (0.2 "
-                    "gamma/a of the stiffest pair)",
-                    dt, repulsion));
+    causes.push_back(fmt::format(
+        "integrator.dt = {} is beyond {:.2g}, the limit of explicit repulsion (0.2 gamma/a of the "
+        "stiffest pair{})",
+        dt, repulsion, scene_.settings().mass > 0.0 ? ", or 0.1 sqrt(m/a)" : ""));
   const double inertia = friction_limit(integrator, stage);
   if (dt > inertia)
     causes.push_back(

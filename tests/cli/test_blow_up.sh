@@ -52,7 +52,6 @@ expect_error 2 run box "${light[@]}" --set integrator.name=velocity-verlet --out
 blown light
 expect_exit 0 run box "${light[@]}" --set run.blow_up=3 --out implicit_friction
 
-# --- a checkpoint is never one of a state that fails: the multiple is so small that this sound run's end is judged bad ---
 expect_error 1 run box --set run.blow_up=1 -- run.blow_up 'above 1'
 
 # --- a solver that does not converge has not blown up, and can be continued with another one, from the step that failed ---
@@ -81,31 +80,33 @@ expect_exit 0 run channel "${quick[@]}" --set run.duration=5 --set fluid.kT=0.01
 expect_exit 0 run channel "${quick[@]}" --set run.duration=5 --set fluid.kT=0.01 --set 'body_force.force=[0.0,20.0]' --out heavy
 
 # --- the start file and what the case says of its contents ---
-expect_error 1 run box --set start.from=file --set "start.file=\"$PWD/small/last.h5\"" --set fluid.density=1 -- density
+file=(--set start.from=file --set "start.file=\"$PWD/extrapolated/last_good.h5\"")
+expect_exit 0 run box "${file[@]}" --out from_file
+expect_error 1 run box "${file[@]}" --set fluid.density=1 -- last_good.h5 '64 fluid particles' fluid.density 16
 
 # --- run.until ---
-until=(--set 'run.until={observable="pressure",standard_error=0.6}' --set output.trajectory_every=0
+until=(--set 'run.until={observable="pressure",standard_error=0.05}' --set output.trajectory_every=0
   --set output.checkpoint_every=100)
-expect_error 1 run box --set 'run.until={observable="presure",standard_error=0.6}' -- run.until.observable "'pressure'"
+expect_error 1 run box --set 'run.until={observable="presure",standard_error=0.05}' -- run.until.observable "'pressure'"
 expect_error 1 run box --set 'run.until={observable="pressure",standard_error=0}' -- run.until.standard_error
 expect_error 1 run box --set 'run.until={observable="pressure"}' -- run.until.standard_error
 expect_exit 0 run box "${until[@]}" --set run.duration=100 --out target
 expect_text "$out_text" 'stopped early' pressure
-expect_exit 0 run box "${until[@]}" --set run.duration=0.5 --out missed
+expect_exit 0 run box "${until[@]}" --set run.duration=2 --out missed
 expect_text "$out_text" 'was not reached'
 # Continued with the same target it is done; with a smaller one it goes on as a run that had it from the start.
 if have_python; then
   expect test "$(value target/summary.json finished)" = True -a "$(value target/summary.json stopped_at_target)" = True
   expect test "$(value missed/summary.json finished)" = True -a "$(value missed/summary.json stopped_at_target)" = False
   steps=$(value target/summary.json steps)
-  expect test "$steps" -gt 100 -a "$steps" -lt 20000
-  expect "$python" -c "assert $(value target/summary.json observables pressure stderr) <= 0.6"
+  expect test "$steps" -gt 400 -a "$steps" -lt 20000
+  expect "$python" -c "assert $(value target/summary.json observables pressure stderr) <= 0.05"
   expect_exit 0 run box "${until[@]}" --set run.duration=100 --restart target/checkpoint.h5
   expect test "$(value target/summary.json steps)" = "$steps"
   expect_exit 0 run box "${until[@]}" --set run.duration=100 --restart missed/checkpoint.h5
   expect test "$(value missed/summary.json observables)" = "$(value target/summary.json observables)"
-  expect_exit 0 run box "${until[@]}" --set run.until.standard_error=0.4 --set run.duration=100 --restart target/checkpoint.h5
-  expect_exit 0 run box "${until[@]}" --set run.until.standard_error=0.4 --set run.duration=100 --out smaller
+  expect_exit 0 run box "${until[@]}" --set run.until.standard_error=0.04 --set run.duration=100 --restart target/checkpoint.h5
+  expect_exit 0 run box "${until[@]}" --set run.until.standard_error=0.04 --set run.duration=100 --out smaller
   expect test "$(value target/summary.json observables)" = "$(value smaller/summary.json observables)"
 fi
 finish

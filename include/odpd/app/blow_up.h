@@ -4,7 +4,7 @@
 //
 //   energy per particle      U/N > b (U_0 + d kT + |f| H),  U_0 the larger of that at the start and of a random
 //                            arrangement of the same density, f the body force
-//   kinetic temperature      of pairs within the cutoff, m <|v_i - v_j|^2>/(2 d) > b (kT + m u^2)(1 + 10/n), with n degrees
+//   kinetic temperature      of pairs within the cutoff, m <|v_i - v_j|^2>/(2 d) > b (kT + U_0 + m u^2)(1 + 10/n), with n degrees
 //                            of freedom: a flow common to both does not count, nor does a small system's scatter
 //   configurational          sum |F_i|^2 > b (kT (L + 3 S) + N F_u^2), L = sum lap_i U, S^2 = sum (lap_i U)^2, F_u the
 //   temperature              drag that the drive can cause on a particle; at equilibrium <sum |F|^2> = kT <L>, and where
