@@ -172,7 +172,6 @@ expect_error 2 run channel --set run.duration=1.0 --restart short/checkpoint.h5 
 expect_exit 0 run channel --set run.duration=0.3 --restart short/checkpoint.h5
 
 # --- start files: they say how many particles there are ---
-expect_error 1 run box --set start.from=file --set 'start.file="any.csv"' -- fluid.density 'start file'
 sed -i '/^density/d' box/case.toml channel/case.toml
 expect_error 1 run box -- fluid.density missing
 start() { run "$1" --set start.from=file --set "start.file=\"$2\"" "${@:3}"; }
@@ -185,6 +184,8 @@ printf 'x,y\n' >box/none.csv
 : >box/empty.csv
 printf 'x,y,species\n0.5,0.5,fluid\n1.0,1.0,polymer\n' >box/species.csv
 printf 'not HDF5\n' >box/broken.h5
+expect_error 1 start box good.csv --set fluid.density=4.0 -- good.csv '4 fluid particles' fluid.density 64
+expect_error 1 start box good.csv --set fluid.count=5 -- good.csv '4 fluid particles' fluid.count 5
 expect_error 3 start box missing.csv -- missing.csv
 expect_error 3 start box ragged.csv -- ragged.csv:3
 expect_error 1 start box word.csv -- word.csv:3 "'y'" here

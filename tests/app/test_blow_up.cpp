@@ -1,0 +1,149 @@
+// What is judged a blow-up: configurations and velocities made for it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "odpd/app/blow_up.h"
+#include "odpd/core/random.h"
+#include "odpd/operator/edge_sums.h"
+#include "odpd/scene/fill.h"
+
+namespace odpd {
+namespace {
+
+template <int D>
+SceneSettings<D> box_of(StartKind start) {
+  SceneSettings<D> s;
+  for (int c = 0; c < D; ++c) s.box.size[c] = D == 2 ? 8.0 : 5.0;
+  s.box.periodic.fill(true);
+  s.start = start;
+  s.relax_sweeps = 0;
+  return s;
+}
+
+template <int D>
+Stage<D> stage_of(const Scene<D>& scene) {
+  Stage<D> stage;
+  stage.position = scene.particles().position;
+  PairList<D> list(scene.box(), scene.model().cutoff(), 0.0);
+  list.update(stage.position);
+  scene.model().write_edges(list, scene.box(), stage.position, scene.particles(), stage.network);
+  stage.potential_force.resize(stage.position.size());
+  add_conservative_forces(stage.network, stage.potential_force);
+  return stage;
+}
+
+template <class T>
+class BlowUp : public testing::Test {};
+using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(BlowUp, Dimensions);
+
+// Only the configurational temperature tells a random arrangement: its energy is that of the bound's unit.
+TYPED_TEST(BlowUp, RandomArrangementAfterAnOrderedOne) {
+  constexpr int D = TypeParam::value;
+  Scene<D> scene(box_of<D>(StartKind::random));
+  BlowUpWatch<D> watch(scene, 10.0);
+  EXPECT_EQ(watch.judge(stage_of(scene), 0.01), "") << "an unrelaxed start is no blow-up";
+  const std::vector<Vec<D>> random = scene.particles().position;
+  relax<D>(scene.box(), scene.model(), scene, 200, scene.particles());
+  EXPECT_EQ(watch.judge(stage_of(scene), 0.01), "");
+  scene.particles().position = random;
+  EXPECT_NE(watch.judge(stage_of(scene), 0.01).find("configurational temperature"),
+            std::string::npos);
+}
+
+TYPED_TEST(BlowUp, EnergyOfParticlesPressedTogether) {
+  constexpr int D = TypeParam::value;
+  Scene<D> scene(box_of<D>(StartKind::lattice));
+  BlowUpWatch<D> watch(scene, 10.0);
+  EXPECT_EQ(watch.judge(stage_of(scene), 0.01), "");
+  for (Vec<D>& r : scene.particles().position) r *= 0.1;
+  EXPECT_NE(watch.judge(stage_of(scene), 0.01).find("energy per particle"), std::string::npos);
+}
+
+// A common velocity heats nobody; 30 times the thermal one of each does, where the energy of the start is small.
+TYPED_TEST(BlowUp, VelocitiesRelativeToNeighbours) {
+  constexpr int D = TypeParam::value;
+  SceneSettings<D> settings = box_of<D>(StartKind::lattice);
+  settings.mass = 0.01;
+  settings.pairs[0].a = 1.0;
+  Scene<D> scene(settings);
+  Particles<D>& particles = scene.particles();
+  particles.carry_inertia();
+  BlowUpWatch<D> watch(scene, 10.0);
+  const auto set = [&](double thermal, double common) {
+    const CounterRandom random(3, Stream::probe);
+    for (std::size_t i = 0; i < particles.end_velocity.size(); ++i)
+      for (int c = 0; c < D; ++c)
+        particles.end_velocity[i][c] =
+            common + thermal * std::sqrt(1.0 / settings.mass) *
+                         random.normal(i, 0, 0, static_cast<std::uint64_t>(c));
+  };
+  set(1.0, 0.0);
+  EXPECT_EQ(watch.judge(stage_of(scene), 0.01), "");
+  set(1.0, 1000.0);
+  EXPECT_EQ(watch.judge(stage_of(scene), 0.01), "");
+  set(30.0, 0.0);
+  EXPECT_NE(watch.judge(stage_of(scene), 0.01).find("kinetic temperature"), std::string::npos);
+}
+
+TYPED_TEST(BlowUp, JumpsOfNeighboursPastEachOther) {
+  constexpr int D = TypeParam::value;
+  Scene<D> scene(box_of<D>(StartKind::lattice));
+  Particles<D>& particles = scene.particles();
+  BlowUpWatch<D> watch(scene, 10.0);
+  for (Vec<D>& v : particles.velocity) v[0] = 500.0;
+  EXPECT_EQ(watch.judge(stage_of(scene), 0.01), "") << "all together";
+  particles.velocity[7][0] = 1000.0;
+  EXPECT_EQ(watch.judge(stage_of(scene), 0.01), "") << "one alone";
+  EXPECT_EQ(watch.fastest(), particles.id[7]);
+  for (std::size_t i = 0; i < particles.velocity.size(); ++i)
+    particles.velocity[i][0] = 500.0 * static_cast<double>(particles.id[i] * 7 % 5);
+  EXPECT_NE(watch.judge(stage_of(scene), 0.01).find("neighbours moved"), std::string::npos);
+}
+
+TEST(BlowUpCure, NamesTheLimitThatIsExceeded) {
+  SceneSettings<2> settings = box_of<2>(StartKind::lattice);  // a = 18.5, gamma = 4.5
+  EXPECT_NEAR(explicit_step_limit(settings), 0.2 * 4.5 / 18.5, 1e-12);
+  Scene<2> scene(settings);
+  const BlowUpWatch<2> watch(scene, 10.0);
+  const Stage<2> stage = stage_of(scene);
+  IntegratorSettings integrator;
+  EXPECT_NE(watch.cure(integrator, stage, 0.5, -1).find("explicit repulsion"), std::string::npos);
+  EXPECT_DOUBLE_EQ(watch.smaller_step(integrator, stage, 0.5), 0.048);
+  EXPECT_DOUBLE_EQ(watch.smaller_step(integrator, stage, 0.02), 0.01);
+  EXPECT_EQ(watch.cure(integrator, stage, 0.02, 0).find("rattler"), std::string::npos);
+  integrator.name = "implicit";
+  EXPECT_DOUBLE_EQ(watch.smaller_step(integrator, stage, 0.5), 0.25);
+}
+
+TEST(BlowUpCure, InertiaOfExplicitFriction) {
+  SceneSettings<2> settings = box_of<2>(StartKind::lattice);
+  settings.mass = 0.01;
+  Scene<2> scene(settings);
+  const BlowUpWatch<2> watch(scene, 10.0);
+  const Stage<2> stage = stage_of(scene);
+  IntegratorSettings integrator;
+  integrator.name = "velocity-verlet";
+  double friction =
+      0.0;  // mean over particles and directions: each edge acts on both ends along one of two directions
+  for (const double zeta : stage.network.zeta_par) friction += zeta;
+  friction /= static_cast<double>(scene.particles().size());
+  const double limit = settings.mass / friction;
+  EXPECT_NE(watch.cure(integrator, stage, 2.0 * limit, -1).find("m/(friction"), std::string::npos);
+  EXPECT_EQ(watch.cure(integrator, stage, 0.9 * limit, -1).find("m/(friction"), std::string::npos);
+}
+
+TEST(BlowUpCure, RattlersAreNamed) {
+  SceneSettings<2> settings = box_of<2>(StartKind::lattice);
+  settings.density = 0.2;
+  Scene<2> scene(settings);
+  const BlowUpWatch<2> watch(scene, 10.0);
+  const std::string text = watch.cure({}, stage_of(scene), 0.01, 4);
+  for (const char* word :
+       {"rattler", "particle 4", "rattler_friction", "mass", "density", "zeta_0"})
+    EXPECT_NE(text.find(word), std::string::npos) << word;
+}
+
+}  // namespace
+}  // namespace odpd
