@@ -138,17 +138,17 @@ void read_fluid(const Config& config, SceneSettings<D>& scene) {
   const Config fluid = config.table("fluid");
   fluid.choice("model", {"dpd"}, "dpd");
   read_amount(fluid, scene);
-  const double density =
-      scene.count > 0 ? static_cast<double>(scene.count) / scene.fluid_volume() : scene.density;
+  const double density = scene.count > 0 ? static_cast<double>(scene.count) / scene.fluid_volume()
+                         : scene.start == StartKind::file ? scene.start_density
+                                                          : scene.density;
   const bool amount = fluid.has("density") || fluid.has("count");
   scene.mass =
       fluid.has("rho") && amount ? mass_of_rho(fluid, density) : fluid.non_negative("mass", 0.0);
   scene.physical_inputs = read_physical_inputs(fluid);
-  if (scene.physical_inputs.any() && scene.start == StartKind::file)
-    fluid.fail(
-        "eta",
-        "physical inputs need the density, which a start file says too late: give gamma, s, a "
-        "and s_bar instead (`odpd run --dry-run` of the case without the file prints them)");
+  if (scene.physical_inputs.any() && density == 0.0)
+    fluid.fail("eta",
+               "physical inputs need the density, which a start file says too late: give "
+               "fluid.density or fluid.count, in agreement with the file");
   DpdParameters base =
       scene.physical_inputs.any()
           ? read_physical_fluid<D>(fluid, scene.physical_inputs, density, scene.mass)
