@@ -24,6 +24,10 @@ double random_energy(const DpdParameters& p, double density) {
   return 0.5 * density * sphere * p.a * std::pow(p.cutoff, D + 1) / (p.s_bar + 1.0) * beta;
 }
 
+bool repulsion_is_explicit(const IntegratorSettings& integrator) {
+  return integrator.name != "implicit" && integrator.name != "monte-carlo";
+}
+
 double two_digits_down(double x) {
   const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
   return std::stod(fmt::format("{:.2g}", unit * std::floor(x / unit * (1.0 + 1e-12))));
@@ -198,7 +202,7 @@ template <int D>
 double BlowUpWatch<D>::smaller_step(const IntegratorSettings& integrator, const Stage<D>& stage,
                                     double dt) const {
   const double repulsion =
-      integrator.name == "implicit" ? dt : explicit_step_limit(scene_.settings());
+      !repulsion_is_explicit(integrator) ? dt : explicit_step_limit(scene_.settings());
   return two_digits_down(std::min({0.5 * dt, repulsion, friction_limit(integrator, stage)}));
 }
 
@@ -207,7 +211,7 @@ std::string BlowUpWatch<D>::cure(const IntegratorSettings& integrator, const Sta
                                  double dt, std::int64_t particle) const {
   std::vector<std::string> causes;
   const double repulsion = explicit_step_limit(scene_.settings());
-  if (dt > repulsion && integrator.name != "implicit")
+  if (dt > repulsion && repulsion_is_explicit(integrator))
     causes.push_back(fmt::format(
         "integrator.dt = {} is beyond {:.2g}, the limit of explicit repulsion (0.2 gamma/a of the "
         "stiffest pair{})",
