@@ -55,6 +55,7 @@ template <int D>
 std::string method_text(const Simulation<D>& simulation) {
   if (const std::string summary = simulation.integrator().summary(); !summary.empty())
     return fmt::format("  {}\n", summary);
+  if (simulation.integrator().solves() == 0) return "  friction is explicit: nothing was solved\n";
   const SolverOptions& options = simulation.settings().solver;
   const SolverStatistics& s = simulation.dynamics().statistics();
   const auto solves = static_cast<double>(std::max<std::int64_t>(s.solves, 1));
@@ -63,6 +64,9 @@ std::string method_text(const Simulation<D>& simulation) {
       options.name, options.tolerance, static_cast<double>(s.iterations) / solves,
       s.most_iterations, s.worst_residual);
   if (!s.problem.empty()) out += fmt::format("  problem solved: {}\n", s.problem);
+  if (s.clamped > 0)
+    out += fmt::format("  {} negative stiffnesses were left out of the implicit repulsion\n",
+                       s.clamped);
   return out;
 }
 

@@ -174,10 +174,10 @@ void Simulation<D>::stop_at_target() {
 
 template <int D>
 const StepRecord<D>& Simulation<D>::step() {
-  const auto due = [this](const auto& observer) { return observer->is_due(clock_); };
-  clock_.advance();
-  clock_.sampled = std::any_of(observers_.begin(), observers_.end(), due);
-  --clock_.step;
+  Clock after = clock_;
+  after.advance();
+  clock_.sampled = std::any_of(observers_.begin(), observers_.end(),
+                               [&](const auto& observer) { return observer->is_due(after); });
   const StepRecord<D>& record = named_step();
   clock_.advance();
   if (record.alarm_crossings > 0 && !alarmed_) {
