@@ -10,8 +10,6 @@ namespace odpd {
 
 namespace {
 
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
-
 /// E^T x: the sum of each component.
 std::vector<double> component_sums(std::span<const double> x, std::size_t block) {
   std::vector<double> sum(block, 0.0);

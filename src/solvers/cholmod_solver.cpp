@@ -14,8 +14,6 @@ namespace odpd {
 
 namespace {
 
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
-
 /// The workspace of CHOLMOD and the objects made in it.
 class Workspace {
  public:

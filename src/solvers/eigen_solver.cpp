@@ -83,8 +83,6 @@ namespace odpd {
 
 namespace {
 
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
-
 class EigenConjugateGradients : public AssembledSolver {
  public:
   explicit EigenConjugateGradients(const SolverOptions& options) : AssembledSolver(options) {}

@@ -21,8 +21,6 @@ constexpr const char* diverged =
     "particles out of reach of all others; a weak pairwise friction of longer range "
     "(fluid.rattler_friction) joins them";
 
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
-
 class ConjugateGradients : public Solver {
  public:
   ConjugateGradients(const SolverOptions& options, std::unique_ptr<Preconditioner> preconditioner)

@@ -23,8 +23,6 @@ constexpr const char* prefix = "odpd_";
 constexpr const char* remedy =
     "change solver.petsc_options (another -pc_type), or choose solver.name = \"pcg\"";
 
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
-
 // ---- PETSc itself
 
 /// The first message of the error that is under way.

@@ -14,7 +14,7 @@ namespace odpd {
 
 namespace {
 
-constexpr double diverged = 1e6;  // growth of the residual that ends the iteration
+constexpr double growth_limit = 1e6;  // growth of the residual that ends the iteration
 
 class Picard : public Solver {
  public:
@@ -79,7 +79,7 @@ Solver::Attempt Picard::attempt(std::span<const double> b, std::span<double> x, 
     if (system_->projected()) remove_mean(residual_, system_->block_size());
     const double norm = fixed_norm(residual_);
     if (result.iterations == 0) first = norm;
-    if (!(norm <= diverged * first)) {
+    if (!(norm <= growth_limit * first)) {
       result.failure =
           "the iteration diverges: the matrix is not positive definite, or has stiffness that "
           "block-Jacobi cannot damp; choose solver.name = \"pcg\"";
