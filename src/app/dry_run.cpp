@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "odpd/app/fluid_report.h"
 #include "odpd/core/parallel.h"
 
@@ -30,6 +28,7 @@ std::string modelled_motion(const Simulation<D>& simulation) {
   const int solves = simulation.integrator().solves();
   out += line(solves > 0, "solves per step",
               fmt::format("{}, integrator {}", solves, simulation.integrator().name()));
+  if (solves == 0) return out;
   const std::string& solver = simulation.settings().solver.name;
   const bool assembled = solver == "eigen-cg" || solver == "cholmod" || solver == "petsc";
   out += line(assembled, "assembled matrix", fmt::format("solver {}", solver));
@@ -54,9 +53,13 @@ std::string modelled(const Simulation<D>& simulation) {
   return out;
 }
 
-// One sweep is tried on the scene that nobody will go on with.
+// One step, or sweep, is tried on the scene that nobody will go on with.
 template <int D>
-std::string sampling_text(Simulation<D>& simulation) {
+std::string trial_text(Simulation<D>& simulation) {
+  const std::string steps =
+      simulation.integrator().in_time()
+          ? fmt::format("steps of dt = {}, nothing to solve", simulation.clock().dt)
+          : std::string("sweeps");
   const Clock clock = simulation.clock();
   const Stopwatch watch;
   simulation.step();
@@ -65,9 +68,8 @@ std::string sampling_text(Simulation<D>& simulation) {
   const std::int64_t free = particles.free_count();
   return fmt::format(
       "{}\n  {}D, {} free particles, {} of known velocity\n"
-      "  {} sweeps ({} of them equilibration), about {:.3g} s at {:.3g} ms per sweep (measured "
-      "once)\n\n",
-      simulation.settings().title, D, free, particles.size() - free, clock.total_steps,
+      "  {} {} ({} of them equilibration), about {:.3g} s at {:.3g} ms each (measured once)\n\n",
+      simulation.settings().title, D, free, particles.size() - free, clock.total_steps, steps,
       clock.equilibration_steps, seconds * static_cast<double>(clock.total_steps), 1e3 * seconds);
 }
 
@@ -76,8 +78,8 @@ std::string sampling_text(Simulation<D>& simulation) {
 template <int D>
 std::string dry_run_text(Simulation<D>& simulation) {
   const std::string fluid = "\n" + fluid_text(simulation.scene(), Results{});
-  if (!simulation.integrator().in_time())
-    return sampling_text(simulation) + modelled(simulation) + fluid;
+  if (simulation.integrator().solves() == 0)
+    return trial_text(simulation) + modelled(simulation) + fluid;
   Dynamics<D>& dynamics = simulation.dynamics();
   const Clock& clock = simulation.clock();
   const Particles<D>& particles = simulation.scene().particles();
@@ -112,8 +114,7 @@ std::string dry_run_text(Simulation<D>& simulation) {
       "  about {:.1f} MiB, about {:.3g} s at {:.3g} ms per stage (measured once, on {} "
       "thread(s))\n\n",
       mebibytes,
-      stage_seconds * std::max(simulation.integrator().solves(), 1) *
-          static_cast<double>(clock.total_steps),
+      stage_seconds * simulation.integrator().solves() * static_cast<double>(clock.total_steps),
       1e3 * stage_seconds, threads());
   return out + modelled(simulation) + fluid;
 }

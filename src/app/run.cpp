@@ -103,12 +103,11 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
     log_warning(warning);
   // Explicit conservative forces are accurate to one to two times this limit.
   if (const double limit = 2.0 * explicit_step_limit(simulation.scene().settings());
-      simulation.integrator().in_time() && settings.clock.dt > limit)
-    log_warning(
-        fmt::format("integrator.dt = {} is beyond 0.4 gamma/a = {:.3g}, where the explicit "
-                    "repulsion is no longer "
-                    "accurate",
-                    settings.clock.dt, limit));
+      repulsion_is_explicit(settings.integrator) && settings.clock.dt > limit)
+    log_warning(fmt::format(
+        "integrator.dt = {} is beyond {:.3g}, twice the limit of explicit repulsion: it "
+        "is no longer accurate there",
+        settings.clock.dt, limit));
 
   const fs::path directory = output_directory(options, settings);
   std::optional<CheckpointReader> checkpoint;

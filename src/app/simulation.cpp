@@ -77,13 +77,17 @@ void Simulation<D>::check_observables(const Config& config) const {
   if (settings_.until->observable == "alarm_crossings")
     until.fail("observable",
                "'alarm_crossings' is a count without an error: name what is measured");
+  if (settings_.until->observable.ends_with(".rms_deviation"))
+    until.fail("observable", "it has no standard error: name what has one");
   check_observable(until);
 }
 
 template <int D>
 void Simulation<D>::check_observable(const Config& entry) const {
-  std::vector<std::string> names{"energy_per_particle", "pressure", "config_temperature",
-                                 "kinetic_temperature", "diffusion"};
+  std::vector<std::string> names{"energy_per_particle", "pressure", "config_temperature"};
+  if (scene_.settings().mass > 0.0 && integrator_->in_time())
+    names.push_back("kinetic_temperature");
+  if (integrator_->in_time()) names.push_back("diffusion");
   if (!scene_.settings().walls.empty()) names.push_back("alarm_crossings");
   for (const auto& observer : observers_) names.push_back(observer->settings().name);
   const std::string observable = entry.text("observable");

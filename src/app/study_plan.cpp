@@ -163,19 +163,23 @@ std::vector<std::vector<std::size_t>> combinations(const StudySettings& study) {
   return list;
 }
 
-// With fluid.alpha, a follows from gamma and mass: an axis over those is another equilibrium at each value.
+// With fluid.alpha, a follows from gamma and mass, and with fluid.rho alone the density from mass: an axis over those is
+// another equilibrium at each value.
 void refuse_hidden_equilibria(const StudySettings& study, const StudyPlan& plan) {
   const StudyRun& run = plan.points.front().runs.front();
-  if (!Config::from_text(run.resolved, "case.toml").table("fluid").has("alpha")) return;
+  const Config fluid = Config::from_text(run.resolved, "case.toml").table("fluid");
+  const bool by_alpha = fluid.has("alpha");
+  const bool by_rho = fluid.has("rho") && !fluid.has("density") && !fluid.has("count");
   for (const StudyAxis& axis : study.axes)
     for (const AxisValue& value : axis.values)
       for (const auto& [key, text] : value.set)
-        if (key.starts_with("fluid.") && is_dynamical(key))
-          throw ConfigError(
-              fmt::format("{}: the axis '{}' sets {}, from which fluid.alpha makes the repulsion: "
-                          "give fluid.a instead of "
-                          "fluid.alpha, or another reference than \"monte-carlo\"",
-                          study.file.string(), axis.name, key));
+        if ((by_alpha && key.starts_with("fluid.") && is_dynamical(key)) ||
+            (by_rho && key == "fluid.mass"))
+          throw ConfigError(fmt::format(
+              "{}: the axis '{}' sets {}, from which fluid.{} makes another equilibrium: give {}, "
+              "or another reference than \"monte-carlo\"",
+              study.file.string(), axis.name, key, by_alpha ? "alpha" : "rho",
+              by_alpha ? "fluid.a instead of fluid.alpha" : "fluid.density instead of fluid.rho"));
 }
 
 // The keys of the Monte Carlo run of a point's equilibrium, and a label that tells it from others.

@@ -96,15 +96,17 @@ std::vector<std::string> integrator_names() {
 IntegratorSettings read_integrator(const Config& config) {
   IntegratorSettings settings;
   settings.name = config.choice("name", integrator_names(), settings.name);
-  if (settings.name == "velocity-verlet") {
+  // monte-carlo runs any case, whatever scheme it was written for.
+  const bool any = settings.name == "monte-carlo";
+  if (settings.name == "velocity-verlet" || (any && config.has("lambda"))) {
     settings.lambda = config.non_negative("lambda", settings.lambda);
     if (settings.lambda > 1.0) config.fail("lambda", "must be between 0 and 1");
   }
-  if (settings.name == "implicit") {
+  if (settings.name == "implicit" || (any && config.has("theta"))) {
     settings.theta = config.positive("theta", settings.theta);
     if (settings.theta > 1.0) config.fail("theta", "must be above 0 and at most 1");
   }
-  if (settings.name == "setd") {
+  if (settings.name == "setd" || (any && config.has("order"))) {
     const std::int64_t order = config.positive_integer("order", settings.order);
     if (order > 2) config.fail("order", "must be 1 or 2");
     settings.order = static_cast<int>(order);

@@ -78,6 +78,14 @@ expect_exit 0 run channel "${quick[@]}" --set run.duration=5 --set fluid.kT=0.00
 expect_exit 0 run channel "${quick[@]}" --set run.duration=5 --set fluid.kT=0.01 --set fluid.mass=0.1 \
   --set 'wall.1.velocity=[10.0,0.0]' --set integrator.dt=0.002 --out fast
 expect_exit 0 run channel "${quick[@]}" --set run.duration=5 --set fluid.kT=0.01 --set 'body_force.force=[0.0,20.0]' --out heavy
+# Friction alone between moving walls: no energy to judge, and a wall's potential is felt all the same.
+expect_exit 0 run channel "${quick[@]}" --set run.duration=5 --set fluid.kT=0 --set fluid.a=0 --set fluid.zeta_0=0.1 \
+  --set fluid.zeta_0_under_flow=true --out friction
+# A long step is nothing to warn of where the repulsion is implicit.
+expect_exit 0 run box "${quick[@]}" --set run.duration=5 --set integrator.dt=0.15 --set integrator.name=implicit --out long
+expect test "$(grep -c 'limit of explicit repulsion' "$err_text")" -eq 0
+expect_exit 0 run box "${quick[@]}" --set run.duration=1 --set integrator.dt=0.15 --set run.blow_up=1e6 --out warned
+expect_text "$err_text" 'twice the limit of explicit repulsion'
 
 # --- the start file and what the case says of its contents ---
 file=(--set start.from=file --set "start.file=\"$PWD/extrapolated/last_good.h5\"")
@@ -88,6 +96,7 @@ expect_error 1 run box "${file[@]}" --set fluid.density=1 -- last_good.h5 '64 fl
 until=(--set 'run.until={observable="pressure",standard_error=0.05}' --set output.trajectory_every=0
   --set output.checkpoint_every=100)
 expect_error 1 run box --set 'run.until={observable="presure",standard_error=0.05}' -- run.until.observable "'pressure'"
+expect_error 1 run box --set 'run.until={observable="kinetic_temperature",standard_error=0.05}' -- run.until.observable pressure
 expect_error 1 run box --set 'run.until={observable="pressure",standard_error=0}' -- run.until.standard_error
 expect_error 1 run box --set 'run.until={observable="pressure"}' -- run.until.standard_error
 expect_exit 0 run box "${until[@]}" --set run.duration=100 --out target

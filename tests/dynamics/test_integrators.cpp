@@ -130,7 +130,7 @@ TEST_P(Integrators, SameBitsOnAnyThreadCount) {
     s.side = 50;  // enough for loops in parallel, within a colour of shardlow as well
     s.solver.tolerance = 1e-2;
     Toy t(s);
-    t.run(*make(), Clock{.dt = 0.005, .total_steps = 2});
+    t.run(*make(), Clock{.dt = 0.005, .total_steps = 4});
     set_threads(1, 0);
     return t.particles.position;
   };

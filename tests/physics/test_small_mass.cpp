@@ -15,28 +15,28 @@ Results run(const std::string& name, std::vector<std::string> overrides) {
   return simulation.results();
 }
 
-// Kinetic temperature of the thesis' fluid over 2500 steps or t = 0.5; standard error 0.001 to 0.004, asserted.
+// Kinetic temperature of the thesis' fluid; standard error 0.001 to 0.004, asserted.
 double low_mass_temperature(const std::string& integrator, const std::string& dt,
                             const std::string& duration, const std::string& extra = "seed=1") {
   const Results results =
       run("05_low_mass", {"integrator.name=" + integrator, "integrator.dt=" + dt,
                           "run.equilibrate=0.05", "run.duration=" + duration, extra});
   const Scalar* t = results.find("kinetic_temperature");
-  EXPECT_LT(t->standard_error, 0.006) << integrator << " " << dt;
+  EXPECT_LT(t->standard_error, 0.005) << integrator << " " << dt;
   return t->mean;
 }
 
 // Table 3.1: 0.9525 and 0.4928 with SETD, 0.8917 with velocity-Verlet, all +- 0.01 (half of it is our own error).
 TEST(SmallMass, SetdReproducesTheThesis) {
-  EXPECT_NEAR(low_mass_temperature("setd", "1e-4", "0.25"), 0.9525, 0.012);
-  EXPECT_NEAR(low_mass_temperature("setd", "5e-4", "1.0"), 0.4928, 0.012);
+  EXPECT_NEAR(low_mass_temperature("setd", "1e-4", "0.25"), 0.9525, 0.015);
+  EXPECT_NEAR(low_mass_temperature("setd", "5e-4", "1.0"), 0.4928, 0.015);
 }
 
 TEST(SmallMass, VelocityVerletReproducesItWithTheLambdaOfGrootAndWarren) {
   EXPECT_NEAR(low_mass_temperature("velocity-verlet", "1e-4", "0.25", "integrator.lambda=0.65"),
-              0.8917, 0.012);
+              0.8917, 0.015);
   EXPECT_NEAR(low_mass_temperature("velocity-verlet", "1e-4", "0.25", "integrator.lambda=0.5"), 1.0,
-              0.012);
+              0.015);
 }
 
 // A time step 25 times longer than the thesis' SETD allows at 5 %.

@@ -28,6 +28,9 @@ namespace odpd {
 template <int D>
 double explicit_step_limit(const SceneSettings<D>& scene);
 
+/// Whether that limit concerns this integrator.
+bool repulsion_is_explicit(const IntegratorSettings& integrator);
+
 template <int D>
 class BlowUpWatch {
  public:

@@ -16,11 +16,11 @@ enum class Stream : std::uint64_t {
   start_positions = 2,  ///< random filling: counter (0, attempt, id, 0)
   start_species = 3,    ///< which particle gets which species: counter (0, 0, id, 0)
   overlap_direction =
-      4,  ///< fixed direction of an edge at r = 0: counter (0, 0, lower id, higher id)
+      4,      ///< fixed direction of an edge at r = 0: counter (0, 0, lower id, higher id)
+  probe = 5,  ///< random vectors of tests and of `compare`: counter (k, 0, i, 0)
   start_velocities = 6,  ///< Maxwell velocities of particles with mass: counter (0, 0, id, 0)
   drag_noise = 7,        ///< noise of the uniform drag zeta_0: counter (step, 0, id, 0)
   monte_carlo = 8,       ///< trial moves: counter (sweep, 0, id, 0): D displacements, acceptance
-  probe = 5,             ///< random vectors of tests and of `compare`: counter (k, 0, i, 0)
 };
 
 /// Uniform and normal numbers of one seed and stream.

@@ -29,7 +29,8 @@ struct StepRecord {
   double start_weight =
       1.0;             ///< of this stage in means over the stages; the second one has the rest
   Stage<D> corrector;  ///< the second stage, where a scheme has one: r*, v2
-  std::vector<Vec<D>> edge_noise;    ///< F_B on i per edge of start.network; empty at kT = 0
+  std::vector<Vec<D>>
+      edge_noise;  ///< F_B on i per edge of start.network; empty at kT = 0 (shardlow: what acted beyond friction at the start)
   std::vector<Vec<D>> v_mid;         ///< velocity that moved each particle: displacement/dt
   std::int64_t alarm_crossings = 0;  ///< particles the mirror had to catch in this step
 
