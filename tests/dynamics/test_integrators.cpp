@@ -2,6 +2,9 @@
 // restart, which masses it takes.
 #include <gtest/gtest.h>
 
+#include <map>
+#include <vector>
+
 #include "odpd/core/error.h"
 #include "odpd/core/parallel.h"
 #include "support/memory_archive.h"
