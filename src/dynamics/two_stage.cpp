@@ -1,12 +1,12 @@
-#include "odpd/dynamics/trapezoidal.h"
+#include "odpd/dynamics/two_stage.h"
 
 namespace odpd {
 
 template <int D>
-const StepRecord<D>& Trapezoidal<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
+const StepRecord<D>& TwoStage<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   auto& record = this->record_;
   this->begin(dynamics, clock);
-  record.start_weight = 0.5;
+  record.start_weight = start_weight_;
   const StepWeights weights{dynamics.inertia(clock.dt), 0.0};
   std::vector<double> q = dynamics.end_velocity();
   std::vector<double> impulse =
@@ -18,20 +18,23 @@ const StepRecord<D>& Trapezoidal<D>::step(Dynamics<D>& dynamics, const Clock& cl
   dynamics.solve(record.start, load, weights, q);
   std::vector<double> q_mid = q;
 
+  const double ahead = reach_ * clock.dt;
   const std::vector<Vec<D>> predicted =
-      dynamics.displaced(record.start.velocity, clock.dt, record.alarm_crossings);
-  dynamics.evaluate(predicted, clock.time() + clock.dt, record.corrector);
+      dynamics.displaced(record.start.velocity, ahead, record.alarm_crossings);
+  dynamics.evaluate(predicted, clock.time() + ahead, record.corrector);
   load = dynamics.force(record.corrector);
   // The noise is the stored vector, never drawn again or projected with the edges of r*.
   for (std::size_t k = 0; k < load.size(); ++k) load[k] += impulse[k];
+  // The first answer is the guess of the second solve.
   dynamics.solve(record.corrector, load, weights, q);
 
-  for (std::size_t k = 0; k < q.size(); ++k) q_mid[k] = 0.5 * (q_mid[k] + q[k]);
+  for (std::size_t k = 0; k < q.size(); ++k)
+    q_mid[k] = start_weight_ * q_mid[k] + (1.0 - start_weight_) * q[k];
   this->finish(dynamics, clock, q_mid);
   return record;
 }
 
-template class Trapezoidal<2>;
-template class Trapezoidal<3>;
+template class TwoStage<2>;
+template class TwoStage<3>;
 
 }  // namespace odpd

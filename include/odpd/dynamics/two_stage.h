@@ -1,0 +1,27 @@
+#pragma once
+// The step that the schemes with two solves share, with M = 2 m/dt and xi = P(r)^T F_B(r) drawn once per step:
+//
+//   (M + R(r )) q1 = M q + F(r , t       ) + xi,    r* = r + c dt P q1
+//   (M + R(r*)) q2 = M q + F(r*, t + c dt) + xi,    q_mid = b q1 + (1 - b) q2,   r' = r + dt P q_mid,   q' = 2 q_mid - q
+//
+// c = 1, b = 1/2: the stochastic trapezoidal rule. c = 1/2, b = 0: Fixman's midpoint rule. Both get the drift from the same
+// stored vector xi in both stages.
+#include "odpd/dynamics/integrator.h"
+
+namespace odpd {
+
+template <int D>
+class TwoStage : public Integrator<D> {
+ public:
+  int solves() const override { return 2; }
+  const StepRecord<D>& step(Dynamics<D>& dynamics, const Clock& clock) override;
+
+ protected:
+  /// reach: c; start_weight: b.
+  TwoStage(double reach, double start_weight) : reach_(reach), start_weight_(start_weight) {}
+
+ private:
+  double reach_, start_weight_;
+};
+
+}  // namespace odpd
