@@ -178,8 +178,11 @@ Legend legend(const Chart& chart, const std::vector<Points>& curves, const Span&
   constexpr std::array<const char*, 4> places{"left top", "right top", "left bottom",
                                               "right bottom"};
   constexpr std::array<std::size_t, 4> order{1, 0, 3, 2};
+  // Labels reach further than their points.
+  const bool labelled = std::any_of(chart.curves.begin(), chart.curves.end(),
+                                    [](const Curve& curve) { return !curve.label.empty(); });
   for (const std::size_t corner : order) {
-    if (covered[corner] > 0 || wide > 0.6 || high > 0.5) continue;
+    if (labelled || covered[corner] > 0 || wide > 0.6 || high > 0.5) continue;
     return {
         fmt::format("set key inside {} Left reverse noenhanced box lc '#bbbbbb' opaque "
                     "samplen 2 spacing 1.15 width 1 height 0.4\n",
