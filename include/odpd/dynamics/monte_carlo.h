@@ -8,8 +8,8 @@
 // force f along bounded directions.
 //
 // Exact for any fixed step: each trial move obeys detailed balance, and their order does not depend on positions (in
-// the spatial order of memory it would, and a sweep would no longer leave the distribution alone). The step is tuned towards 40 % acceptance during
-// equilibration only. integrator.dt counts sweeps and is no time: there are no velocities, and displacements say nothing
+// the spatial order of memory it would, and a sweep would no longer leave the distribution alone). The step is tuned
+// towards 40 % acceptance during equilibration only. integrator.dt counts sweeps and is no time: there are no velocities, and displacements say nothing
 // about diffusion. Breaks where there is no equilibrium: moving walls, a body force along a periodic direction, kT = 0,
 // pairs of different kT (all refused). Slow, not wrong, where particles are caged.
 #include <cstdint>
