@@ -5,23 +5,21 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "odpd/analysis/thermo.h"
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
+#include "odpd/scene/physical_inputs.h"
 
 namespace odpd {
 
 namespace {
 
-// Energy per particle of a random arrangement: n/2 int u dV, with int_0^1 x^(d-1) (1-x)^(s_bar+1) dx a beta function.
+// Energy per particle of a random arrangement: n/2 [u].
 template <int D>
 double random_energy(const DpdParameters& p, double density) {
-  const double sphere = 2.0 * std::pow(std::numbers::pi, 0.5 * D) / std::tgamma(0.5 * D);
-  const double beta = std::exp(std::lgamma(D) + std::lgamma(p.s_bar + 2.0) -
-                               std::lgamma(static_cast<double>(D) + p.s_bar + 2.0));
-  return 0.5 * density * sphere * p.a * std::pow(p.cutoff, D + 1) / (p.s_bar + 1.0) * beta;
+  return 0.5 * density * p.a * p.cutoff / (p.s_bar + 1.0) *
+         weight_moment<D>(0, p.s_bar + 1.0, p.cutoff);
 }
 
 double two_digits_down(double x) {

@@ -11,6 +11,7 @@
 #include "odpd/app/live_line.h"
 #include "odpd/app/report.h"
 #include "odpd/app/run_output.h"
+#include "odpd/app/shell.h"
 #include "odpd/app/simulation.h"
 #include "odpd/core/error.h"
 #include "odpd/core/log.h"
@@ -38,20 +39,15 @@ bool same_directory(const fs::path& a, const fs::path& b) {
 template <int D>
 std::string command_to_go_on(const RunOptions& options, const Simulation<D>& simulation,
                              const fs::path& directory) {
-  const auto quoted = [](const std::string& word) {
-    std::string text = "'";
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
-  };
   const fs::path start = fs::absolute(directory / "last_good.h5").lexically_normal();
-  std::string command = "odpd run " + quoted(options.case_path.string());
+  std::string command = "odpd run " + shell_quoted(options.case_path.string());
   for (const std::string& set : options.overrides)
     if (!set.starts_with("integrator.dt=") && !set.starts_with("start."))
-      command += " --set " + quoted(set);
+      command += " --set " + shell_quoted(set);
   command += fmt::format(" --set integrator.dt={} --set start.from=file --set {}",
                          simulation.smaller_step(),
-                         quoted(fmt::format("start.file=\"{}\"", start.string())));
-  return command + " --out " + quoted(directory.string() + "-smaller-step");
+                         shell_quoted(fmt::format("start.file=\"{}\"", start.string())));
+  return command + " --out " + shell_quoted(directory.string() + "-smaller-step");
 }
 
 // The way out after a step that failed or a state that has blown up: what is left, and how to go on.

@@ -10,6 +10,7 @@
 
 #include "odpd/app/interrupt.h"
 #include "odpd/app/report.h"
+#include "odpd/app/shell.h"
 #include "odpd/app/study_report.h"
 #include "odpd/core/error.h"
 #include "odpd/io/file.h"
@@ -21,16 +22,6 @@ namespace odpd {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string quoted_for_shell(const std::string& word) {
-  const auto plain = [](char c) {
-    return is_plain_name(std::string(1, c)) || std::string("./=+,:").find(c) != std::string::npos;
-  };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
 
 // key="word" as key=word, where that means the same.
 std::string bare(const std::string& assignment) {
@@ -203,8 +194,8 @@ void write_files(const fs::path& out, const StudyResults& results) {
 }  // namespace
 
 std::string run_command(const StudySettings& study, const StudyRun& run) {
-  std::string command = "odpd run " + quoted_for_shell(study.case_path.string());
-  for (const std::string& o : run.overrides) command += " --set " + quoted_for_shell(bare(o));
+  std::string command = "odpd run " + shell_quoted(study.case_path.string());
+  for (const std::string& o : run.overrides) command += " --set " + shell_quoted(bare(o));
   return command;
 }
 
@@ -215,8 +206,8 @@ int run_study(const StudyOptions& options) {
   results.plan = plan_study(study, options.dry_run);
   if (options.dry_run) return list_points(study, results.plan);
   results.threads = options.threads;
-  results.command = "odpd study " + quoted_for_shell(options.study_path.string()) +
-                    (options.quick ? " --quick" : "");
+  results.command =
+      "odpd study " + shell_quoted(options.study_path.string()) + (options.quick ? " --quick" : "");
   const fs::path out =
       !options.out.empty()
           ? options.out

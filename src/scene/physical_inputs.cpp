@@ -19,14 +19,6 @@ double rising_product(double x, int last) {
   return product;
 }
 
-// [R^power (1 - R/r_c)^exponent] = S r_c^m B(m, exponent + 1) with m = power + d, S the surface of the unit sphere.
-template <int D>
-double moment(int power, double exponent, double cutoff) {
-  const double surface = 2.0 * std::pow(std::numbers::pi, 0.5 * D) / std::tgamma(0.5 * D);
-  const int m = power + D;
-  return surface * std::pow(cutoff, m) * std::tgamma(m) / rising_product(exponent, m);
-}
-
 // s_bar of (s_bar + 1)...(s_bar + d + 1) = c: a cubic in 2D (3.7), a quadratic of (s_bar + 5/2)^2 in 3D (3.6).
 template <int D>
 double repulsion_exponent(double c);
@@ -87,12 +79,12 @@ template <int D>
 void set_compressibility(const PhysicalInputs& in, double n, DpdParameters& p) {
   const double excess = (*in.kappa_inverse - 1.0) * p.kT;  // n a [R w_C]/d
   if (in.keep_s_bar) {
-    p.a = excess * D / (n * moment<D>(1, p.s_bar, p.cutoff));
+    p.a = excess * D / (n * weight_moment<D>(1, p.s_bar, p.cutoff));
     return;
   }
-  // moment(0) holds the product at s_bar = 0, (d + 1)!.
+  // weight_moment(0) holds the product at s_bar = 0, (d + 1)!.
   const double least = rising_product(0.0, D + 1);
-  const double at_zero = n * p.a * moment<D>(1, 0.0, p.cutoff) / D;
+  const double at_zero = n * p.a * weight_moment<D>(1, 0.0, p.cutoff) / D;
   const double c = least * at_zero / excess;
   require(
       c > least, "kappa_inverse",
@@ -106,12 +98,19 @@ void set_compressibility(const PhysicalInputs& in, double n, DpdParameters& p) {
 }  // namespace
 
 template <int D>
+double weight_moment(int power, double exponent, double cutoff) {
+  const double surface = 2.0 * std::pow(std::numbers::pi, 0.5 * D) / std::tgamma(0.5 * D);
+  const int m = power + D;
+  return surface * std::pow(cutoff, m) * std::tgamma(m) / rising_product(exponent, m);
+}
+
+template <int D>
 DpdParameters dpd_parameters(const PhysicalInputs& in, const DpdParameters& base, double n,
                              double mass) {
   DpdParameters p = base;
   validate(in, p.kT, mass);
   if (in.Sc) p.s = friction_exponent<D>(in, p, n, mass);
-  if (in.eta) p.gamma = *in.eta * 2.0 * D * (D + 2) / (n * n * moment<D>(2, p.s, p.cutoff));
+  if (in.eta) p.gamma = *in.eta * 2.0 * D * (D + 2) / (n * n * weight_moment<D>(2, p.s, p.cutoff));
   if (in.alpha) p.a = p.gamma * p.gamma * p.cutoff / (*in.alpha * mass);
   if (in.kappa_inverse) set_compressibility<D>(in, n, p);
   return p;
@@ -119,12 +118,12 @@ DpdParameters dpd_parameters(const PhysicalInputs& in, const DpdParameters& base
 
 template <int D>
 KineticTheory kinetic_theory(const DpdParameters& p, double n, double mass) {
-  const double repulsion = p.a * moment<D>(1, p.s_bar, p.cutoff) / D;  // 2 (p - n kT)/n^2
-  const double compression = p.kT + n * repulsion;                     // dp/dn
-  const double drag = p.gamma * n * moment<D>(0, p.s, p.cutoff);       // d kT/D
+  const double repulsion = p.a * weight_moment<D>(1, p.s_bar, p.cutoff) / D;  // 2 (p - n kT)/n^2
+  const double compression = p.kT + n * repulsion;                            // dp/dn
+  const double drag = p.gamma * n * weight_moment<D>(0, p.s, p.cutoff);       // d kT/D
   KineticTheory k;
   k.rho = n * mass;
-  k.eta_friction = p.gamma * n * n * moment<D>(2, p.s, p.cutoff) / (2.0 * D * (D + 2));
+  k.eta_friction = p.gamma * n * n * weight_moment<D>(2, p.s, p.cutoff) / (2.0 * D * (D + 2));
   k.diffusion = p.kT > 0.0 ? D * p.kT / drag : 0.0;
   k.eta_kinetic = mass > 0.0 ? 0.5 * k.rho * k.diffusion : 0.0;
   const double inertia = k.rho * k.diffusion;
@@ -137,6 +136,8 @@ KineticTheory kinetic_theory(const DpdParameters& p, double n, double mass) {
   return k;
 }
 
+template double weight_moment<2>(int, double, double);
+template double weight_moment<3>(int, double, double);
 template DpdParameters dpd_parameters<2>(const PhysicalInputs&, const DpdParameters&, double,
                                          double);
 template DpdParameters dpd_parameters<3>(const PhysicalInputs&, const DpdParameters&, double,

@@ -17,6 +17,10 @@
 
 namespace odpd {
 
+/// [R^power (1 - R/r_c)^exponent] = S r_c^m B(m, exponent + 1), m = power + d, S the surface of the unit sphere.
+template <int D>
+double weight_moment(int power, double exponent, double cutoff);
+
 /// What is asked of a fluid; what is absent stays as its DPD parameters say.
 struct PhysicalInputs {
   std::optional<double> eta;    ///< viscosity of friction (energy time/length^d), sets gamma
