@@ -187,7 +187,7 @@ TEST(DriftToy, RotorSamplesItsAngles) {
   EXPECT_NEAR(far_from_the_friction_point(2, Noise::stored, 20000), 1.0, 0.03);
 }
 
-// Standard error about 2 %: the bounds are several of them away from 1 and from what was measured, 0.76 and 0.55.
+// Standard error about 2 %: the bounds are several of them away from 1 and from what was measured, 0.72 and 0.57.
 TEST(DriftToy, RotorWithReprojectedTorqueIsRejected) {
   EXPECT_LT(far_from_the_friction_point(2, Noise::reprojected, 6000), 0.88);
 }
