@@ -7,7 +7,7 @@
 //
 // K = sum over edges of max(k_c, 0) e e^T; the first step leaves the lagged terms out, compensation included.
 // Drift: as the extrapolated scheme. Order without noise: 2. Does not blow up where explicit schemes do (dt beyond
-// gamma/a), but pays in dynamics: at a = 100 and dt = 0.02 = 0.44 gamma/a self-diffusion is 8 % low, at dt = 0.05 a third.
+// gamma/a), but pays in dynamics: at a = 100 and dt = 0.02 = 0.44 gamma/a self-diffusion is 10 % low, at dt = 0.05 a third.
 // For statics and relaxation at strong repulsion. The smooth potential of walls stays explicit: with walls keep dt below
 // friction/stiffness, some 0.02.
 #include "odpd/dynamics/extrapolated.h"
