@@ -11,6 +11,23 @@
 
 namespace odpd {
 
+namespace {
+
+// P^T A P q where `add` adds the forces - A v of the edges.
+template <int D, class Add>
+std::vector<double> resisted(const Stage<D>& stage, const DofMap<D>& dofs,
+                             const std::vector<double>& q, const Add& add) {
+  std::vector<Vec<D>> velocity, force(stage.position.size());
+  dofs.scatter(q, std::vector<Vec<D>>(force.size()), velocity);
+  add(stage.network, velocity, force);
+  std::vector<double> f;
+  dofs.gather(force, f);
+  for (double& value : f) value = -value;
+  return f;
+}
+
+}  // namespace
+
 template <int D>
 Dynamics<D>::Dynamics(const Box<D>& box, Particles<D>& particles, const PairModel<D>& model,
                       const Surroundings<D>& surroundings, std::unique_ptr<Solver> solver,
@@ -104,25 +121,13 @@ auto Dynamics<D>::force(const Stage<D>& stage) -> Unknowns {
 template <int D>
 auto Dynamics<D>::friction(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
   const PhaseTimer timer(phases_, Phase::assembly);
-  std::vector<Vec<D>> velocity, force(stage.position.size());
-  dofs().scatter(q, std::vector<Vec<D>>(force.size()), velocity);
-  add_friction_forces<D>(stage.network, velocity, force);
-  Unknowns f;
-  dofs().gather(force, f);
-  for (double& value : f) value = -value;
-  return f;
+  return resisted(stage, dofs(), q, add_friction_forces<D>);
 }
 
 template <int D>
 auto Dynamics<D>::spring(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
   const PhaseTimer timer(phases_, Phase::assembly);
-  std::vector<Vec<D>> velocity, force(stage.position.size());
-  dofs().scatter(q, std::vector<Vec<D>>(force.size()), velocity);
-  add_spring_forces<D>(stage.network, velocity, force);
-  Unknowns f;
-  dofs().gather(force, f);
-  for (double& value : f) value = -value;
-  return f;
+  return resisted(stage, dofs(), q, add_spring_forces<D>);
 }
 
 template <int D>

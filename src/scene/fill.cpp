@@ -210,13 +210,14 @@ void draw_velocities(std::uint64_t seed, double kT, double mass, bool conserved,
   if (mass == 0.0) return;
   particles.carry_inertia();
   const CounterRandom random(seed, Stream::start_velocities);
+  const double share = 1.0 / static_cast<double>(particles.free_count());
   Vec<D> mean{};
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
     if (!particles.is_free(i)) continue;
     const auto w = random.normals(0, 0, static_cast<std::uint64_t>(particles.id[i]), 0);
     for (std::size_t c = 0; c < D; ++c)
       particles.end_velocity[i].x[c] = std::sqrt(kT / mass) * w[c];
-    mean += (1.0 / static_cast<double>(particles.free_count())) * particles.end_velocity[i];
+    mean += share * particles.end_velocity[i];
   }
   for (std::size_t i = 0; i < particles.position.size() && conserved; ++i)
     if (particles.is_free(i)) particles.end_velocity[i] -= mean;

@@ -184,25 +184,35 @@ TEST(IntegratorTable, SchemesThatCannotTakeAMassSayWhichCan) {
     EXPECT_EQ(make_integrator<3>(name)->name(), name);
 }
 
-// Nothing but a uniform drag and its noise: the velocity is an Ornstein-Uhlenbeck process. N = 3000 particles out of each
-// other's reach; sampled over 40 correlation times, so that the variance has a standard error of about 0.4 %. x = zeta_0
+// 3000 particles out of each other's reach.
+struct Strangers {
+  explicit Strangers(const DynamicsSettings& settings)
+      : dynamics(box, scattered(particles), model, nothing, make_solver({.name = "pcg"}),
+                 settings) {}
+  static Particles<2>& scattered(Particles<2>& particles) {
+    for (int k = 0; k < 3000; ++k)
+      particles.add({{7.0 * (k % 57) + 1.0, 7.0 * (k / 57) + 1.0}}, 0, 0);
+    return particles;
+  }
+  Box<2> box{{{400.0, 400.0}}, {true, true}};
+  Particles<2> particles;
+  DpdModel<2> model{1, {DpdParameters{.a = 0.0}}};
+  NoSurroundings<2> nothing;
+  Dynamics<2> dynamics;
+};
+
+// Nothing but a uniform drag and its noise: the velocity is an Ornstein-Uhlenbeck process. N = 3000 particles;
+// sampled over 40 correlation times, so that the variance has a standard error of about 0.4 %. x = zeta_0
 // dt/m = 1: schemes that freeze the noise are off by what their headers say, (2/x) tanh(x/2) = 0.924.
 double drag_temperature(const IntegratorSettings& settings, double dt) {
   constexpr double zeta_0 = 2.0, mass = 0.1;
-  const Box<2> box{{{400.0, 400.0}}, {true, true}};
-  Particles<2> particles;
-  for (int k = 0; k < 3000; ++k)
-    particles.add({{7.0 * (k % 57) + 1.0, 7.0 * (k / 57) + 1.0}}, 0, 0);
-  const DpdModel<2> model(1, {DpdParameters{.a = 0.0}});
-  const NoSurroundings<2> nothing;
-  Dynamics<2> dynamics(box, particles, model, nothing, make_solver({.name = "pcg"}),
-                       DynamicsSettings{.mass = mass, .zeta_0 = zeta_0});
+  Strangers strangers(DynamicsSettings{.mass = mass, .zeta_0 = zeta_0});
   const auto integrator = make_integrator<2>(settings);
   const auto relaxed = static_cast<std::int64_t>(6.0 * mass / zeta_0 / dt) + 1;
   Clock clock{.dt = dt, .total_steps = 7 * relaxed};
   double square = 0.0;
   for (; !clock.finished(); clock.advance()) {
-    const StepRecord<2>& record = integrator->step(dynamics, clock);
+    const StepRecord<2>& record = integrator->step(strangers.dynamics, clock);
     if (clock.step < relaxed) continue;
     for (const Vec<2>& v : record.v_start) square += dot(v, v);
   }
@@ -222,18 +232,11 @@ TEST(Drag, VelocityHasTheVarianceThatTheHeadersState) {
 
 // Massless: each step is a Gaussian of variance 2 kT dt/zeta_0 per component. 2 x 3000 x 20 samples: standard error 0.4 %.
 TEST(Drag, MasslessParticlesDiffuseWithKTOverZeta) {
-  const Box<2> box{{{400.0, 400.0}}, {true, true}};
-  Particles<2> particles;
-  for (int k = 0; k < 3000; ++k)
-    particles.add({{7.0 * (k % 57) + 1.0, 7.0 * (k / 57) + 1.0}}, 0, 0);
-  const DpdModel<2> model(1, {DpdParameters{.a = 0.0}});
-  const NoSurroundings<2> nothing;
-  Dynamics<2> dynamics(box, particles, model, nothing, make_solver({.name = "pcg"}),
-                       DynamicsSettings{.zeta_0 = 2.0});
+  Strangers strangers(DynamicsSettings{.zeta_0 = 2.0});
   const auto integrator = make_integrator<2>("trapezoidal");
   double square = 0.0;
   for (Clock clock{.dt = 0.01, .total_steps = 20}; !clock.finished(); clock.advance())
-    for (const Vec<2>& v : integrator->step(dynamics, clock).v_mid) square += dot(v, v);
+    for (const Vec<2>& v : integrator->step(strangers.dynamics, clock).v_mid) square += dot(v, v);
   EXPECT_NEAR(square * 0.01 * 0.01 / (2.0 * 3000.0 * 20.0) / (2.0 * 0.01 / 2.0), 1.0, 0.02);
 }
 

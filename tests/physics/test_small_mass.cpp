@@ -28,15 +28,15 @@ double low_mass_temperature(const std::string& integrator, const std::string& dt
 
 // Table 3.1: 0.9525 and 0.4928 with SETD, 0.8917 with velocity-Verlet, all +- 0.01 (half of it is our own error).
 TEST(SmallMass, SetdReproducesTheThesis) {
-  EXPECT_NEAR(low_mass_temperature("setd", "1e-4", "0.25"), 0.9525, 0.015);
-  EXPECT_NEAR(low_mass_temperature("setd", "5e-4", "1.0"), 0.4928, 0.015);
+  EXPECT_NEAR(low_mass_temperature("setd", "1e-4", "0.25"), 0.9525, 0.012);
+  EXPECT_NEAR(low_mass_temperature("setd", "5e-4", "1.0"), 0.4928, 0.012);
 }
 
 TEST(SmallMass, VelocityVerletReproducesItWithTheLambdaOfGrootAndWarren) {
   EXPECT_NEAR(low_mass_temperature("velocity-verlet", "1e-4", "0.25", "integrator.lambda=0.65"),
-              0.8917, 0.015);
+              0.8917, 0.012);
   EXPECT_NEAR(low_mass_temperature("velocity-verlet", "1e-4", "0.25", "integrator.lambda=0.5"), 1.0,
-              0.015);
+              0.012);
 }
 
 // A time step 25 times longer than the thesis' SETD allows at 5 %.
