@@ -32,6 +32,11 @@ SolverOptions read_solver(const Config& config, bool& hold_centre_of_mass) {
                          ? Stopping::increment
                          : Stopping::residual;
   options.petsc_options = config.text("petsc_options", "");
+  options.preconditioner = config.choice("preconditioner", preconditioner_names(), "auto");
+  if (options.preconditioner != "auto" && options.name != "pcg")
+    config.fail("preconditioner",
+                "only solver.name = \"pcg\" has a choice of preconditioners: "
+                "leave this key out");
   const bool scheme_2 = options.name == "picard-deflated";
   hold_centre_of_mass = config.boolean("hold_centre_of_mass", scheme_2);
   if (scheme_2 && !hold_centre_of_mass)
@@ -186,7 +191,7 @@ CaseSettings read_case(const Config& config, const std::string& name) {
                                                   : integrator.positive("dt");
   c.solver = read_solver(config.table("solver"), c.dynamics.hold_centre_of_mass);
   const Config neighbours = config.table("neighbours");
-  c.dynamics.skin = neighbours.non_negative("skin", c.dynamics.skin);
+  if (neighbours.has("skin")) c.dynamics.skin = neighbours.non_negative("skin");
   c.dynamics.reorder_every = interval(neighbours, "reorder_every", c.dynamics.reorder_every);
   const Config run = config.table("run");
   c.clock.equilibration_steps =

@@ -104,6 +104,7 @@ Row measure(const FrozenProblem<D>& problem, SolverOptions options, double toler
   const bool picard = options.name == "picard" || scheme_2;
   options.stopping = picard && increment_rule ? Stopping::increment : Stopping::residual;
   if (options.name != "petsc") options.petsc_options.clear();
+  if (options.name != "pcg") options.preconditioner = "auto";
   Row row;
   row.solver = options.name;
   row.tolerance = tolerance;

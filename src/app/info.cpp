@@ -7,6 +7,7 @@
 
 #include <fstream>
 
+#include "odpd/core/isa.h"
 #include "odpd/dynamics/integrator.h"
 #include "odpd/solvers/solver.h"
 #include "odpd/version.h"
@@ -34,7 +35,8 @@ std::string info_text() {
   out += fmt::format("  build         {} with {}, PETSc {}\n", ODPD_BUILD_TYPE, ODPD_COMPILER,
                      ODPD_WITH_PETSC ? "on" : "off");
   out += fmt::format(
-      "  instructions  {}, no fused multiply-add\n",
+      "  instructions  kernels {} (ODPD_ISA), the rest {} without fused multiply-add\n",
+      isa_name(isa()),
       ODPD_NATIVE ? "those of the machine it was compiled on (-march=native)" : "x86-64 baseline");
   out += fmt::format("  solvers       {}\n", fmt::join(available_solvers(), ", "));
   out += fmt::format("  integrators   {}\n", fmt::join(integrator_names(), ", "));

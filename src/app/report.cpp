@@ -47,6 +47,8 @@ JsonObject solver_json(const Simulation<D>& simulation) {
       .set("most_iterations", s.most_iterations);
   json.set("iterations_per_solve", static_cast<double>(s.iterations) / solves);
   json.set("worst_residual", s.worst_residual);
+  if (options.name == "pcg")
+    json.set("preconditioner", options.preconditioner).set("fallbacks", s.fallbacks);
   return json;
 }
 
@@ -64,6 +66,8 @@ std::string method_text(const Simulation<D>& simulation) {
       options.name, options.tolerance, static_cast<double>(s.iterations) / solves,
       s.most_iterations, s.worst_residual);
   if (!s.problem.empty()) out += fmt::format("  problem solved: {}\n", s.problem);
+  if (s.fallbacks > 0)
+    out += fmt::format("  in {} solves multilevel gave up and block-Jacobi went on\n", s.fallbacks);
   if (s.clamped > 0)
     out += fmt::format("  {} negative stiffnesses were left out of the implicit repulsion\n",
                        s.clamped);

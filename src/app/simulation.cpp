@@ -9,6 +9,7 @@
 #include <map>
 
 #include "odpd/core/error.h"
+#include "odpd/core/isa.h"
 #include "odpd/core/log.h"
 
 namespace odpd {
@@ -126,7 +127,7 @@ void Simulation<D>::explain(const SolverError& error) {
   const auto* blow_up = dynamic_cast<const BlowUpError*>(&error);
   if (blow_up == nullptr) throw SolverError(what);
   throw BlowUpError(fmt::format("{}: the run has blown up. {}", what,
-                                watch_of_state_.cure(settings_.integrator, judged_, clock_.dt,
+                                watch_of_state_.cure(settings_.integrator, judged(), clock_.dt,
                                                      blow_up->particle())),
                     blow_up->particle());
 }
@@ -138,11 +139,11 @@ void Simulation<D>::judge() {
   const Particles<D>& particles = scene_.particles();
   std::string why;
   try {
-    dynamics_.evaluate(particles.position, clock_.time(), judged_);
-    why = watch_of_state_.judge(judged_, clock_.dt);
+    dynamics_.evaluate(particles.position, clock_.time(), judged());
+    why = watch_of_state_.judge(judged(), clock_.dt);
   } catch (const BlowUpError& e) {
     why = e.what();
-    judged_.network = PairNetwork<D>{};
+    judged().network = PairNetwork<D>{};
   }
   if (why.empty()) {
     judged_step_ = clock_.step;
@@ -159,7 +160,7 @@ void Simulation<D>::judge() {
   throw BlowUpError(
       fmt::format("step {} (t = {:.6g}): the run has blown up: {}{}. {}", clock_.step,
                   clock_.time(), why, moved,
-                  watch_of_state_.cure(settings_.integrator, judged_, clock_.dt, fastest)),
+                  watch_of_state_.cure(settings_.integrator, judged(), clock_.dt, fastest)),
       fastest);
 }
 
@@ -256,10 +257,12 @@ void Simulation<D>::save(CheckpointWriter& out) const {
   run.write("phase_seconds", std::vector<double>(phases.seconds.begin(), phases.seconds.end()));
   run.write("wall_seconds", std::vector<double>{wall_seconds()});
   const SolverStatistics& s = dynamics_.statistics();
-  run.write("solver_counts",
-            std::vector<std::int64_t>{s.solves, s.iterations, s.most_iterations, s.clamped});
+  run.write("solver_counts", std::vector<std::int64_t>{s.solves, s.iterations, s.most_iterations,
+                                                       s.clamped, s.fallbacks});
   run.write("solver_worst_residual", std::vector<double>{s.worst_residual});
   run.write_text("solver_problem", s.problem);
+  run.write_text("instructions", std::string(isa_name(isa())));
+  dynamics_.solver().save(out.component("solver"));
   scene_.particles().save(out.component("particles"));
   integrator_->save(out.component("integrator"));
   watch_of_state_.save(out.component("blow_up"));
@@ -295,6 +298,7 @@ void Simulation<D>::load(CheckpointReader& in) {
   s.iterations = solver.at(1);
   s.most_iterations = solver.at(2);
   s.clamped = solver.at(3);
+  s.fallbacks = solver.at(4);
   s.worst_residual = run.read_doubles("solver_worst_residual").at(0);
   s.problem = run.read_text("solver_problem");
   const std::int64_t expected = scene_.particles().size();
@@ -304,6 +308,12 @@ void Simulation<D>::load(CheckpointReader& in) {
         "the checkpoint holds {} particles, the case has {}: it belongs to another case",
         scene_.particles().size(), expected));
   dynamics_.particles_replaced();
+  if (const std::string path = run.read_text("instructions"); path != isa_name(isa()))
+    log_warning(fmt::format(
+        "the run so far took the instruction path {}, this process takes {}: rounding will differ "
+        "(ODPD_ISA={} forces the former where the processor has it)",
+        path, isa_name(isa()), path));
+  dynamics_.solver().load(in.component("solver"), dynamics_.resistance());
   integrator_->load(in.component("integrator"));
   watch_of_state_.load(in.component("blow_up"));
   for (std::size_t k = 0; k < observers_.size(); ++k)

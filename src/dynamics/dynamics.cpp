@@ -4,14 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "odpd/core/error.h"
+#include "odpd/core/log.h"
+#include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
 #include "odpd/pairs/noise.h"
 
 namespace odpd {
 
 namespace {
+
+// Particles that one thread takes at a time.
+constexpr std::int64_t range = 1024;
+std::size_t ranges(std::int64_t n) { return static_cast<std::size_t>((n + range - 1) / range); }
 
 // P^T A P q where `add` adds the forces - A v of the edges.
 template <int D, class Add>
@@ -59,36 +66,47 @@ void Dynamics<D>::reorder_if_due(std::int64_t step) {
 
 template <int D>
 void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage<D>& stage) {
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    if (!finite(positions[i]))
-      throw BlowUpError(fmt::format("the position of particle {} at t = {:.6g} is not finite",
-                                    particles_.id[i], time),
-                        particles_.id[i]);
+  const auto n = static_cast<std::int64_t>(positions.size());
   stage.time = time;
-  stage.position.assign(positions.begin(), positions.end());
+  for (auto* column :
+       {&stage.position, &stage.potential_force, &stage.driving_force, &stage.velocity})
+    column->resize(positions.size());
+  std::vector<char> lost(ranges(n), 0);
+  parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      stage.position[i] = positions[i];
+      stage.potential_force[i] = stage.driving_force[i] = Vec<D>{};
+      stage.velocity[i] = particles_.is_free(i)
+                              ? Vec<D>{}
+                              : surroundings_.known_velocity(particles_.group[i], time);
+      if (!finite(positions[i])) lost[static_cast<std::size_t>(begin / range)] = 1;
+    }
+  });
+  if (std::count(lost.begin(), lost.end(), 1) > 0)
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      if (!finite(positions[i]))
+        throw BlowUpError(fmt::format("the position of particle {} at t = {:.6g} is not finite",
+                                      particles_.id[i], time),
+                          particles_.id[i]);
   {
     const PhaseTimer timer(phases_, Phase::neighbours);
     list_.update(stage.position);
   }
   const PhaseTimer timer(phases_, Phase::edges);
   model_.write_edges(list_, box_, stage.position, particles_, stage.network);
-  stage.potential_force.assign(stage.position.size(), Vec<D>{});
   if (model_.conservative()) add_conservative_forces(stage.network, stage.potential_force);
   surroundings_.add_potential_forces(particles_, stage.position, stage.potential_force);
-  stage.driving_force.assign(stage.position.size(), Vec<D>{});
   surroundings_.add_driving_forces(particles_, time, stage.driving_force);
-  stage.velocity.assign(stage.position.size(), Vec<D>{});
-  for (std::size_t i = 0; i < stage.position.size(); ++i)
-    if (!particles_.is_free(i))
-      stage.velocity[i] = surroundings_.known_velocity(particles_.group[i], time);
 }
 
 template <int D>
 auto Dynamics<D>::draw_noise(const Stage<D>& stage, std::int64_t step, double dt,
                              std::vector<Vec<D>>& edge_noise) -> Unknowns {
   const PhaseTimer timer(phases_, Phase::noise);
-  edge_noise.clear();
-  if (!model_.thermal()) return Unknowns(static_cast<std::size_t>(dofs().unknowns()), 0.0);
+  if (!model_.thermal()) {
+    edge_noise.clear();
+    return Unknowns(static_cast<std::size_t>(dofs().unknowns()), 0.0);
+  }
   draw_edge_noise(stage.network, particles_, settings_.seed, static_cast<std::uint64_t>(step), dt,
                   edge_noise);
   std::vector<Vec<D>> force(stage.position.size());
@@ -105,13 +123,21 @@ template <int D>
 auto Dynamics<D>::force(const Stage<D>& stage) -> Unknowns {
   const PhaseTimer timer(phases_, Phase::assembly);
   std::vector<Vec<D>> force(stage.position.size());
-  for (std::size_t i = 0; i < force.size(); ++i)
+  parallel_for(static_cast<std::int64_t>(force.size()), [&](std::int64_t particle) {
+    const auto i = static_cast<std::size_t>(particle);
     force[i] = stage.potential_force[i] + stage.driving_force[i];
+  });
   if (dofs().nodes() < dofs().particles()) {
-    std::vector<Vec<D>> known = stage.velocity;
-    for (std::size_t i = 0; i < known.size(); ++i)
-      if (particles_.is_free(i)) known[i] = Vec<D>{};
-    add_friction_forces<D>(stage.network, known, force);
+    std::vector<std::int32_t> known;
+    std::vector<Vec<D>> velocity = stage.velocity;
+    for (std::size_t i = 0; i < velocity.size(); ++i) {
+      if (particles_.is_free(i)) {
+        velocity[i] = Vec<D>{};
+      } else {
+        known.push_back(static_cast<std::int32_t>(i));
+      }
+    }
+    add_known_friction<D>(stage.network, known, velocity, force);
   }
   Unknowns f;
   dofs().gather(force, f);
@@ -170,6 +196,8 @@ void Dynamics<D>::note(const SolveReport& report) {
   statistics_.most_iterations = std::max(statistics_.most_iterations, report.iterations);
   statistics_.worst_residual = std::max(statistics_.worst_residual, report.residual);
   statistics_.problem = report.problem;
+  if (report.note.empty()) return;
+  if (++statistics_.fallbacks == 1) log_warning(fmt::format("solver: {}", report.note));
 }
 
 template <int D>
@@ -216,42 +244,62 @@ std::vector<Vec<D>> Dynamics<D>::velocities(const Stage<D>& stage, const Unknown
 
 template <int D>
 void Dynamics<D>::check_paths(const std::vector<Vec<D>>& velocity, double dt) const {
+  const auto n = static_cast<std::int64_t>(velocity.size());
+  const auto too_far = [&](std::size_t i, int c) {
+    return !(std::abs(dt * velocity[i][c]) < 0.5 * box_.size[c]);
+  };
+  std::vector<char> found(ranges(n), 0);
+  parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
+    bool any = false;
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+      for (int c = 0; c < D; ++c) any = any || too_far(i, c);
+    found[static_cast<std::size_t>(begin / range)] = any ? 1 : 0;
+  });
+  if (std::count(found.begin(), found.end(), 1) == 0) return;
   for (std::size_t i = 0; i < velocity.size(); ++i)
-    for (int c = 0; c < D; ++c) {
-      const double path = dt * velocity[i][c];
-      if (std::abs(path) < 0.5 * box_.size[c]) continue;
-      throw BlowUpError(
-          fmt::format("particle {} would move {:.3g} in direction {}, more than half the "
-                      "box ({:.3g})",
-                      particles_.id[i], path, "xyz"[c], box_.size[c]),
-          particles_.id[i]);
-    }
+    for (int c = 0; c < D; ++c)
+      if (too_far(i, c))
+        throw BlowUpError(
+            fmt::format("particle {} would move {:.3g} in direction {}, more than half the "
+                        "box ({:.3g})",
+                        particles_.id[i], dt * velocity[i][c], "xyz"[c], box_.size[c]),
+            particles_.id[i]);
 }
 
 template <int D>
 std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, double dt,
                                            std::int64_t& crossings) const {
   check_paths(velocity, dt);
+  const auto n = static_cast<std::int64_t>(velocity.size());
   std::vector<Vec<D>> r = particles_.position;
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    r[i] += dt * velocity[i];
-    box_.wrap(r[i]);
-    if (particles_.is_free(i) && surroundings_.confine(r[i])) ++crossings;
-  }
+  std::vector<std::int64_t> caught(ranges(n), 0);
+  parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      r[i] += dt * velocity[i];
+      box_.wrap(r[i]);
+      if (particles_.is_free(i) && surroundings_.confine(r[i]))
+        ++caught[static_cast<std::size_t>(begin / range)];
+    }
+  });
+  for (const std::int64_t count : caught) crossings += count;
   return r;
 }
 
 template <int D>
 std::int64_t Dynamics<D>::move(const std::vector<Vec<D>>& velocity, double dt) {
   check_paths(velocity, dt);
-  std::int64_t crossings = 0;
-  for (std::size_t i = 0; i < velocity.size(); ++i) {
-    particles_.position[i] += dt * velocity[i];
-    particles_.velocity[i] = velocity[i];
-    box_.wrap(particles_.position[i], particles_.image[i]);
-    if (particles_.is_free(i) && surroundings_.confine(particles_.position[i])) ++crossings;
-  }
-  return crossings;
+  const auto n = static_cast<std::int64_t>(velocity.size());
+  std::vector<std::int64_t> caught(ranges(n), 0);
+  parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      particles_.position[i] += dt * velocity[i];
+      particles_.velocity[i] = velocity[i];
+      box_.wrap(particles_.position[i], particles_.image[i]);
+      if (particles_.is_free(i) && surroundings_.confine(particles_.position[i]))
+        ++caught[static_cast<std::size_t>(begin / range)];
+    }
+  });
+  return std::accumulate(caught.begin(), caught.end(), std::int64_t{0});
 }
 
 template class Dynamics<2>;

@@ -70,21 +70,20 @@ void Shardlow<D>::exchange(Dynamics<D>& dynamics, const Clock& clock,
   const Particles<D>& particles = dynamics.particles();
   const PairNetwork<D>& network = this->record_.start.network;
   const double mass = dynamics.settings().mass;
-  const CounterRandom random(dynamics.settings().seed, Stream::pair_noise);
   std::vector<char> free(velocity.size());
   for (std::size_t i = 0; i < free.size(); ++i) free[i] = particles.is_free(i) ? 1 : 0;
   colours_.assign(network.i, network.j, free);
   const std::vector<Vec<D>>& start = this->record_.start.velocity;
   std::vector<Vec<D>>& edge_force = this->record_.edge_noise;
   edge_force.resize(static_cast<std::size_t>(network.size()));
-  const auto step = static_cast<std::uint64_t>(clock.step);
+  const PairRandom random(dynamics.settings().seed, static_cast<std::uint64_t>(clock.step));
   const bool thermal = dynamics.model().thermal();
   const auto pass = [&](std::size_t k) {
     const auto i = static_cast<std::size_t>(network.i[k]),
                j = static_cast<std::size_t>(network.j[k]);
     const Vec<D>& e = network.e[k];
     const double mu = free[i] && free[j] ? 0.5 * mass : mass;
-    const EdgeNormals<D> w(random, network, particles, k, step);
+    const EdgeNormals<D> w(random, network, particles, k);
     const Vec<D> slip = velocity[i] - velocity[j];
     const double along = dot(slip, e);
     Vec<D> change = relaxation(along, network.zeta_par[k], mu, network.kT[k], clock.dt,

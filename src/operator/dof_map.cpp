@@ -1,5 +1,7 @@
 #include "odpd/operator/dof_map.h"
 
+#include "odpd/core/parallel.h"
+
 namespace odpd {
 
 template <int D>
@@ -16,18 +18,23 @@ DofMap<D>::DofMap(const Particles<D>& particles) {
 template <int D>
 void DofMap<D>::gather(std::span<const Vec<D>> particle_values, std::vector<double>& q) const {
   q.resize(static_cast<std::size_t>(unknowns()));
-  for (std::size_t n = 0; n < particle_.size(); ++n)
+  parallel_for(nodes(), [&](std::int64_t node) {
+    const auto n = static_cast<std::size_t>(node);
     for (std::size_t c = 0; c < D; ++c)
       q[n * D + c] = particle_values[static_cast<std::size_t>(particle_[n])].x[c];
+  });
 }
 
 template <int D>
 void DofMap<D>::scatter(std::span<const double> q, std::span<const Vec<D>> known,
                         std::vector<Vec<D>>& velocity) const {
-  velocity.assign(known.begin(), known.end());
-  for (std::size_t n = 0; n < particle_.size(); ++n)
+  velocity.resize(known.size());
+  parallel_for(particles(), [&](std::int64_t particle) {
+    const auto p = static_cast<std::size_t>(particle);
+    const auto node = static_cast<std::size_t>(node_[p]);
     for (std::size_t c = 0; c < D; ++c)
-      velocity[static_cast<std::size_t>(particle_[n])].x[c] = q[n * D + c];
+      velocity[p].x[c] = node_[p] >= 0 ? q[node * D + c] : known[p].x[c];
+  });
 }
 
 template class DofMap<2>;

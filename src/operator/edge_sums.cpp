@@ -3,21 +3,55 @@
 #include <algorithm>
 
 #include "odpd/core/parallel.h"
+#include "odpd/pairs/edge_loop.h"
 
 namespace odpd {
 
 namespace {
 
-// add(p, edge, sign): sign +1 where p is the edge's i.
-template <int D, class Add>
-void for_each_incidence(const PairNetwork<D>& network, const Add& add) {
-  parallel_for(network.particles, [&](std::int64_t particle) {
-    const auto p = static_cast<std::size_t>(particle);
-    for (const std::int32_t edge : network.edges_of(particle)) {
-      const auto k = static_cast<std::size_t>(edge);
-      add(p, k, network.i[k] == particle ? 1.0 : -1.0);
-    }
-  });
+// sum[p] += value(k) for the edges k of p that have it as i; those that have it as j add it, or subtract it if `opposite`.
+template <int D, class Value, class Sum>
+void add_edges(const PairNetwork<D>& network, bool opposite, const Value& value,
+               std::vector<Sum>& sum) {
+  if (network.first.empty()) {
+    parallel_for(network.particles, [&](std::int64_t particle) {
+      Sum& s = sum[static_cast<std::size_t>(particle)];
+      for (const std::int32_t edge : network.edges_of(particle)) {
+        const auto k = static_cast<std::size_t>(edge);
+        if (opposite && network.i[k] != particle) {
+          s -= value(k);
+        } else {
+          s += value(k);
+        }
+      }
+    });
+    return;
+  }
+  for_each_owned_edge(
+      network,
+      [&](std::size_t p, std::size_t k) {
+        if (opposite) {
+          sum[p] -= value(k);
+        } else {
+          sum[p] += value(k);
+        }
+      },
+      [&](std::size_t p, std::size_t begin, std::size_t end) {
+        Sum s = sum[p];
+        for (std::size_t k = begin; k < end; ++k) s += value(k);
+        sum[p] = s;
+      });
+}
+
+// Friction on i of edge k.
+template <int D>
+Vec<D> friction_of(const PairNetwork<D>& network, std::size_t k, std::span<const Vec<D>> velocity) {
+  const Vec<D> slip = velocity[static_cast<std::size_t>(network.i[k])] -
+                      velocity[static_cast<std::size_t>(network.j[k])];
+  const double along = dot(slip, network.e[k]);
+  Vec<D> force = (network.zeta_perp[k] - network.zeta_par[k]) * along * network.e[k];
+  if (network.transverse) force -= network.zeta_perp[k] * slip;
+  return force;
 }
 
 }  // namespace
@@ -25,61 +59,72 @@ void for_each_incidence(const PairNetwork<D>& network, const Add& add) {
 template <int D>
 void add_edge_forces(const PairNetwork<D>& network, std::span<const Vec<D>> edge_force,
                      std::vector<Vec<D>>& force) {
-  for_each_incidence(network, [&](std::size_t p, std::size_t k, double sign) {
-    force[p] += sign * edge_force[k];
-  });
+  add_edges(
+      network, true, [&](std::size_t k) { return edge_force[k]; }, force);
 }
 
 template <int D>
 void add_conservative_forces(const PairNetwork<D>& network, std::vector<Vec<D>>& force) {
-  for_each_incidence(network, [&](std::size_t p, std::size_t k, double sign) {
-    force[p] += sign * network.f_c[k] * network.e[k];
-  });
+  add_edges(
+      network, true, [&](std::size_t k) { return network.f_c[k] * network.e[k]; }, force);
 }
 
 template <int D>
 void add_friction_forces(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
                          std::vector<Vec<D>>& force) {
-  for_each_incidence(network, [&](std::size_t p, std::size_t k, double sign) {
-    const Vec<D> slip = velocity[static_cast<std::size_t>(network.i[k])] -
-                        velocity[static_cast<std::size_t>(network.j[k])];
-    const double along = dot(slip, network.e[k]);
-    Vec<D> drag = (network.zeta_par[k] - network.zeta_perp[k]) * along * network.e[k];
-    drag += network.zeta_perp[k] * slip;
-    force[p] -= sign * drag;
-  });
+  add_edges(
+      network, true, [&](std::size_t k) { return friction_of(network, k, velocity); }, force);
+}
+
+template <int D>
+void add_known_friction(const PairNetwork<D>& network, std::span<const std::int32_t> known,
+                        std::span<const Vec<D>> velocity, std::vector<Vec<D>>& force) {
+  for (const std::int32_t p : known)
+    for (const std::int32_t edge : network.edges_of(p)) {
+      const auto k = static_cast<std::size_t>(edge);
+      const double sign = network.i[k] == p ? -1.0 : 1.0;
+      const std::int32_t other = network.i[k] == p ? network.j[k] : network.i[k];
+      force[static_cast<std::size_t>(other)] += sign * friction_of(network, k, velocity);
+    }
 }
 
 template <int D>
 void add_spring_forces(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
                        std::vector<Vec<D>>& force) {
-  for_each_incidence(network, [&](std::size_t p, std::size_t k, double sign) {
+  const auto spring = [&](std::size_t k) {
     const Vec<D> slip = velocity[static_cast<std::size_t>(network.i[k])] -
                         velocity[static_cast<std::size_t>(network.j[k])];
-    force[p] -= sign * std::max(network.k_c[k], 0.0) * dot(slip, network.e[k]) * network.e[k];
-  });
+    return -std::max(network.k_c[k], 0.0) * dot(slip, network.e[k]) * network.e[k];
+  };
+  add_edges(network, true, spring, force);
 }
 
 template <int D>
 void add_friction_blocks(const PairNetwork<D>& network,
                          std::vector<std::array<double, static_cast<std::size_t>(D* D)>>& blocks) {
-  for_each_incidence(network, [&](std::size_t p, std::size_t k, double) {
-    const double along = network.zeta_par[k] - network.zeta_perp[k];
-    for (std::size_t row = 0; row < D; ++row)
-      for (std::size_t col = 0; col < D; ++col)
-        blocks[p][row * D + col] += along * network.e[k].x[row] * network.e[k].x[col] +
-                                    (row == col ? network.zeta_perp[k] : 0.0);
+  parallel_for(network.particles, [&](std::int64_t particle) {
+    auto& block = blocks[static_cast<std::size_t>(particle)];
+    for (const std::int32_t edge : network.edges_of(particle)) {
+      const auto k = static_cast<std::size_t>(edge);
+      const double along = network.zeta_par[k] - network.zeta_perp[k];
+      for (std::size_t row = 0; row < D; ++row)
+        for (std::size_t col = 0; col < D; ++col)
+          block[row * D + col] += along * network.e[k].x[row] * network.e[k].x[col] +
+                                  (row == col ? network.zeta_perp[k] : 0.0);
+    }
   });
 }
 
 template <int D>
 void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian) {
-  for_each_incidence(network, [&](std::size_t p, std::size_t k, double) {
-    // At r = 0 the Laplacian of a pair that repels is infinite. Such an edge is left out: coincident
-    // particles have measure zero, and one must not make an average infinite for good.
-    if (network.f_c[k] != 0.0 && network.r[k] > 0.0)
-      laplacian[p] += network.k_c[k] - (D - 1) * network.f_c[k] / network.r[k];
-  });
+  // At r = 0 the Laplacian of a pair that repels is infinite. Such an edge is left out: coincident
+  // particles have measure zero, and one must not make an average infinite for good.
+  const auto share = [&](std::size_t k) {
+    return network.f_c[k] != 0.0 && network.r[k] > 0.0
+               ? network.k_c[k] - (D - 1) * network.f_c[k] / network.r[k]
+               : 0.0;
+  };
+  add_edges(network, false, share, laplacian);
 }
 
 #define ODPD_INSTANTIATE(D)                                                                      \
@@ -88,6 +133,8 @@ void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian
   template void add_conservative_forces<D>(const PairNetwork<D>&, std::vector<Vec<D>>&);         \
   template void add_friction_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,           \
                                        std::vector<Vec<D>>&);                                    \
+  template void add_known_friction<D>(const PairNetwork<D>&, std::span<const std::int32_t>,      \
+                                      std::span<const Vec<D>>, std::vector<Vec<D>>&);            \
   template void add_spring_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,             \
                                      std::vector<Vec<D>>&);                                      \
   template void add_friction_blocks<D>(                                                          \

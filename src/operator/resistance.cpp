@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -57,17 +58,13 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
   stiffness_time_ = stiffness_time;
   ++generation_;
   const auto n_nodes = static_cast<std::size_t>(nodes_);
-  start_.assign(n_nodes + 1, 0);
-  parallel_for(nodes_, [&](std::int64_t node) {
-    const auto n = static_cast<std::size_t>(node);
-    const std::int32_t particle = dofs.particle_of(n);
-    for (const std::int32_t edge : network.edges_of(particle))
-      if (dofs.node_of(other_end(network, edge, particle)) >= 0) ++start_[n + 1];
-  });
-  std::partial_sum(start_.begin(), start_.end(), start_.begin());
+  weigh_edges(network);
+  count_links(network, dofs);
   links_.resize(static_cast<std::size_t>(start_.back()));
-  across_.resize(network.transverse ? links_.size() : 0);
-  anchor_.assign(n_nodes, Block{});
+  const bool anchored = shift != 0.0 || dofs.nodes() < dofs.particles();
+  anchor_.assign(anchored ? n_nodes : 0, Block{});
+  diagonal_.resize(n_nodes);
+  parent_.resize(n_nodes);
   positions_.resize(n_nodes * D);
   parallel_for(nodes_, [&](std::int64_t node) {
     const auto n = static_cast<std::size_t>(node);
@@ -76,49 +73,100 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
       positions_[n * D + c] = positions[static_cast<std::size_t>(particle)].x[c];
     fill_row(n, particle, network, dofs);
   });
-  const bool anchored = std::any_of(anchor_.begin(), anchor_.end(), [](const Block& block) {
-    return std::any_of(block.begin(), block.end(), [](double entry) { return entry != 0.0; });
+  translations_are_null_ = std::all_of(anchor_.begin(), anchor_.end(), [](const Block& block) {
+    return std::all_of(block.begin(), block.end(), [](double entry) { return entry == 0.0; });
   });
-  translations_are_null_ = !anchored;
-  if (!anchored) anchor_.clear();
+  if (translations_are_null_) anchor_.clear();
   if (shift != 0.0) return;
   check_rattlers(network, dofs, particles);
   check_clusters(dofs, particles);
 }
 
 template <int D>
+void Resistance<D>::weigh_edges(const PairNetwork<D>& network) {
+  const bool stiff = stiffness_time_ != 0.0, transverse = network.transverse;
+  const auto edges = static_cast<std::size_t>(network.size());
+  if (g_.capacity() < edges) g_.reserve(edges + edges / 32);  // their number varies a little
+  g_.resize(edges);
+  across_.resize(transverse ? edges : 0);
+  parallel_for(network.size(), [&](std::int64_t edge) {
+    const auto k = static_cast<std::size_t>(edge);
+    double along = network.zeta_par[k];
+    if (stiff) along += stiffness_time_ * std::max(network.k_c[k], 0.0);
+    if (transverse) {
+      along -= network.zeta_perp[k];
+      across_[k] = {network.zeta_perp[k], along < 0.0 ? -1.0 : 1.0};
+    }
+    g_[k] = std::sqrt(std::abs(along)) * network.e[k];
+  });
+}
+
+template <int D>
+void Resistance<D>::count_links(const PairNetwork<D>& network, const DofMap<D>& dofs) {
+  if (dofs.nodes() == dofs.particles()) {
+    start_.assign(network.start.begin(), network.start.end());
+    return;
+  }
+  start_.assign(static_cast<std::size_t>(nodes_) + 1, 0);
+  parallel_for(nodes_, [&](std::int64_t node) {
+    const auto n = static_cast<std::size_t>(node);
+    const std::int32_t particle = dofs.particle_of(n);
+    for (const std::int32_t edge : network.edges_of(particle))
+      if (dofs.node_of(other_end(network, edge, particle)) >= 0) ++start_[n + 1];
+  });
+  std::partial_sum(start_.begin(), start_.end(), start_.begin());
+}
+
+template <int D>
 void Resistance<D>::fill_row(std::size_t node, std::int32_t particle, const PairNetwork<D>& network,
                              const DofMap<D>& dofs) {
-  Block& anchor = anchor_[node];
-  for (std::size_t c = 0; c < D; ++c) anchor[c * D + c] = shift_;
-  auto slot = static_cast<std::size_t>(start_[node]);
+  Block free{}, known{};  // upper triangles
+  Link* link = links_.data() + start_[node];
+  auto parent = static_cast<std::int32_t>(node);
   for (const std::int32_t edge : network.edges_of(particle)) {
     const auto k = static_cast<std::size_t>(edge);
-    const double along = network.zeta_par[k] + stiffness_time_ * std::max(network.k_c[k], 0.0) -
-                         network.zeta_perp[k];
     const std::int32_t partner = dofs.node_of(other_end(network, edge, particle));
-    if (partner >= 0) {
-      links_[slot] = {std::sqrt(std::abs(along)) * network.e[k], partner};
-      if (network.transverse) across_[slot] = {network.zeta_perp[k], along < 0.0 ? -1.0 : 1.0};
-      ++slot;
-      continue;
+    Block& sum = partner >= 0 ? free : known;
+    Vec<D> g = g_[k];
+    if (!across_.empty()) {
+      for (std::size_t c = 0; c < D; ++c) sum[c * D + c] += across_[k].zeta_perp;
+      for (std::size_t row = 0; row < D; ++row)
+        for (std::size_t col = row; col < D; ++col)
+          sum[row * D + col] += across_[k].sign * g.x[row] * g.x[col];
+    } else {
+      for (std::size_t row = 0; row < D; ++row)
+        for (std::size_t col = row; col < D; ++col) sum[row * D + col] += g.x[row] * g.x[col];
     }
-    for (std::size_t row = 0; row < D; ++row)
-      for (std::size_t col = 0; col < D; ++col)
-        anchor[row * D + col] += along * network.e[k].x[row] * network.e[k].x[col] +
-                                 (row == col ? network.zeta_perp[k] : 0.0);
+    if (partner < 0) continue;
+    *link = {edge, partner};
+    if (partner < parent && ties(*link)) parent = partner;
+    ++link;
   }
+  parent_[static_cast<std::size_t>(node)] = parent;
+  for (std::size_t c = 0; c < D; ++c) known[c * D + c] += shift_;
+  Block& diagonal = diagonal_[node];
+  for (std::size_t row = 0; row < D; ++row)
+    for (std::size_t col = row; col < D; ++col) {
+      known[col * D + row] = known[row * D + col];
+      diagonal[row * D + col] = diagonal[col * D + row] =
+          free[row * D + col] + known[row * D + col];
+    }
+  if (!anchor_.empty()) anchor_[node] = known;
 }
 
 template <int D>
 void Resistance<D>::check_rattlers(const PairNetwork<D>& network, const DofMap<D>& dofs,
                                    const Particles<D>& particles) const {
-  std::vector<double> blocks(static_cast<std::size_t>(nodes_) * D * D);
-  block_diagonal(blocks);
   // Below this a block inverse would amplify rounding beyond any tolerance in use.
   constexpr double singular = 1e-12;
-  for (std::size_t n = 0; n < static_cast<std::size_t>(nodes_); ++n) {
-    if (relative_determinant<D>(&blocks[n * D * D]) > singular) continue;
+  std::atomic<std::int64_t> first{nodes_};
+  parallel_for(nodes_, [&](std::int64_t node) {
+    if (relative_determinant<D>(diagonal_[static_cast<std::size_t>(node)].data()) > singular)
+      return;
+    lower(first, node);
+  });
+  if (first < nodes_) {
+    const auto n = static_cast<std::size_t>(first.load());
     const std::int32_t particle = dofs.particle_of(n);
     throw SolverError(fmt::format(
         "particle {} is a rattler: its {} neighbour(s) within the cutoff leave it free to move in "
@@ -131,11 +179,19 @@ void Resistance<D>::check_rattlers(const PairNetwork<D>& network, const DofMap<D
 }
 
 // Nodes joined by links move as one; each such group must be held by particles of known velocity, or be the only one.
+// A node's parent is its lowest neighbour (fill_row), so that the roots of this forest are the few nodes without a lower
+// one, and the links of those nearly always join it.
 template <int D>
-void Resistance<D>::check_clusters(const DofMap<D>& dofs, const Particles<D>& particles) const {
+void Resistance<D>::check_clusters(const DofMap<D>& dofs, const Particles<D>& particles) {
   const auto n_nodes = static_cast<std::size_t>(nodes_);
-  std::vector<std::int32_t> parent(n_nodes);
-  std::iota(parent.begin(), parent.end(), 0);
+  std::vector<std::int32_t>& parent = parent_;
+  std::vector<std::size_t> roots;
+  for (std::size_t n = 0; n < n_nodes; ++n) {
+    auto& up = parent[n];
+    if (up == static_cast<std::int32_t>(n)) roots.push_back(n);
+    up = parent[static_cast<std::size_t>(up)];  // lower nodes point to their roots already
+  }
+  std::size_t groups = roots.size();
   const auto root = [&](std::int32_t n) {
     while (parent[static_cast<std::size_t>(n)] != n) {
       auto& up = parent[static_cast<std::size_t>(n)];
@@ -144,11 +200,18 @@ void Resistance<D>::check_clusters(const DofMap<D>& dofs, const Particles<D>& pa
     }
     return n;
   };
-  for (std::size_t n = 0; n < n_nodes; ++n)
-    for (auto k = static_cast<std::size_t>(start_[n]); k < static_cast<std::size_t>(start_[n + 1]);
-         ++k)
-      if (dot(links_[k].g, links_[k].g) > 0.0 || !across_.empty())
-        parent[static_cast<std::size_t>(root(links_[k].node))] = root(static_cast<std::int32_t>(n));
+  const auto join = [&](std::size_t n) {
+    for (const Link& link : links(n)) {
+      if (!ties(link)) continue;
+      const std::int32_t a = root(static_cast<std::int32_t>(n)), b = root(link.node);
+      if (a == b) continue;
+      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+      --groups;
+    }
+  };
+  for (const std::size_t n : roots) join(n);
+  if (groups <= 1) return;  // held, or the null space
+  for (std::size_t n = 0; n < n_nodes && groups > 1; ++n) join(n);
   std::vector<bool> held(n_nodes, false);
   for (std::size_t n = 0; n < anchor_.size(); ++n)
     if (anchor_[n] != Block{})
@@ -169,11 +232,11 @@ void Resistance<D>::check_clusters(const DofMap<D>& dofs, const Particles<D>& pa
 
 /// Friction force of a link per slip: (+- g g^T + zeta_perp I) slip.
 template <int D>
-Vec<D> Resistance<D>::pull(std::size_t link, const Vec<D>& slip) const {
-  const Vec<D>& g = links_[link].g;
-  if (across_.empty()) return dot(g, slip) * g;
-  const Across& a = across_[link];
-  return a.sign * dot(g, slip) * g + a.zeta_perp * slip;
+Vec<D> Resistance<D>::pull(const Link& link, const Vec<D>& slip) const {
+  const Vec<D>& direction = g(link);
+  if (across_.empty()) return dot(direction, slip) * direction;
+  const Across& a = across(link);
+  return a.sign * dot(direction, slip) * direction + a.zeta_perp * slip;
 }
 
 template <int D>
@@ -185,13 +248,12 @@ Vec<D> Resistance<D>::row_product(std::size_t node, std::span<const double> x) c
     for (std::size_t row = 0; row < D; ++row)
       for (std::size_t col = 0; col < D; ++col)
         sum.x[row] += anchor_[node][row * D + col] * own.x[col];
-  const auto end = static_cast<std::size_t>(start_[node + 1]);
-  for (auto k = static_cast<std::size_t>(start_[node]); k < end; ++k) {
-    const Vec<D> slip = own - load<D>(x, static_cast<std::size_t>(links_[k].node));
+  for (const Link& link : links(node)) {
+    const Vec<D> slip = own - load<D>(x, static_cast<std::size_t>(link.node));
     if constexpr (transverse) {
-      sum += pull(k, slip);
+      sum += pull(link, slip);
     } else {
-      sum += dot(links_[k].g, slip) * links_[k].g;
+      sum += dot(g(link), slip) * g(link);
     }
   }
   return sum;
@@ -211,41 +273,29 @@ template <int D>
 void Resistance<D>::block_diagonal(std::span<double> blocks) const {
   parallel_for(nodes_, [&](std::int64_t node) {
     const auto n = static_cast<std::size_t>(node);
-    for (std::size_t col = 0; col < D; ++col) {
-      Vec<D> unit{};
-      unit.x[col] = 1.0;
-      Vec<D> sum;
-      for (std::size_t row = 0; row < D && !anchor_.empty(); ++row)
-        sum.x[row] = anchor_[n][row * D + col];
-      const auto end = static_cast<std::size_t>(start_[n + 1]);
-      for (auto k = static_cast<std::size_t>(start_[n]); k < end; ++k) sum += pull(k, unit);
-      for (std::size_t row = 0; row < D; ++row) blocks[(n * D + row) * D + col] = sum.x[row];
-    }
+    std::copy(diagonal_[n].begin(), diagonal_[n].end(), &blocks[n * D * D]);
   });
 }
 
 template <int D>
 const BlockCsr& Resistance<D>::matrix() const {
   if (matrix_generation_ == generation_) return matrix_;
-  std::vector<double> diagonal(static_cast<std::size_t>(nodes_) * D * D);
-  block_diagonal(diagonal);
   BlockCsr m;
   m.block = D;
   m.rows = static_cast<std::int32_t>(nodes_);
   m.start.assign(static_cast<std::size_t>(nodes_) + 1, 0);
-  std::vector<std::size_t> row;
+  std::vector<Link> row;
   for (std::size_t n = 0; n < static_cast<std::size_t>(nodes_); ++n) {
-    row.resize(static_cast<std::size_t>(start_[n + 1] - start_[n]));
-    std::iota(row.begin(), row.end(), static_cast<std::size_t>(start_[n]));
+    row.assign(links(n).begin(), links(n).end());
     std::stable_sort(row.begin(), row.end(),
-                     [&](std::size_t a, std::size_t b) { return links_[a].node < links_[b].node; });
+                     [](const Link& a, const Link& b) { return a.node < b.node; });
     const auto self = static_cast<std::int32_t>(n);
     auto next = row.begin();
-    const auto put = [&](std::size_t link) {
+    const auto put = [&](const Link& link) {
       // Several edges may join the same two nodes; their blocks add up.
-      const std::int32_t column = links_[link].node;
-      if (static_cast<std::int32_t>(m.column.size()) == m.start[n] || m.column.back() != column) {
-        m.column.push_back(column);
+      if (static_cast<std::int32_t>(m.column.size()) == m.start[n] ||
+          m.column.back() != link.node) {
+        m.column.push_back(link.node);
         m.value.insert(m.value.end(), D * D, 0.0);
       }
       double* block = &m.value[m.value.size() - D * D];
@@ -256,9 +306,9 @@ const BlockCsr& Resistance<D>::matrix() const {
         for (std::size_t r = 0; r < D; ++r) block[r * D + col] -= y.x[r];
       }
     };
-    for (; next != row.end() && links_[*next].node < self; ++next) put(*next);
+    for (; next != row.end() && next->node < self; ++next) put(*next);
     m.column.push_back(self);
-    m.value.insert(m.value.end(), &diagonal[n * D * D], &diagonal[n * D * D] + D * D);
+    m.value.insert(m.value.end(), diagonal_[n].begin(), diagonal_[n].end());
     for (; next != row.end(); ++next) put(*next);
     m.start[n + 1] = static_cast<std::int32_t>(m.column.size());
   }

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "edge_kernels.h"
 #include "odpd/core/error.h"
+#include "odpd/core/isa.h"
 #include "odpd/pairs/edge_writer.h"
 
 namespace odpd {
@@ -81,8 +83,39 @@ template <int D>
 void DpdModel<D>::write_edges(const PairList<D>& list, const Box<D>& box,
                               std::span<const Vec<D>> positions, const Particles<D>& particles,
                               PairNetwork<D>& network) const {
-  write_pair_edges([this](double r, Site i, Site j) { return terms(r, i, j); }, cutoff_, list, box,
-                   positions, particles, network);
+  const DpdParameters& p = table_[0].p;
+  const auto quick = [](double exponent) {
+    return exponent == 0.5 || exponent == 1.0 || exponent == 2.0;
+  };
+  const bool alike =
+      std::all_of(table_.begin(), table_.end(), [&](const Entry& entry) { return entry.p == p; });
+  if (!alike || !quick(p.s) || !quick(p.s_bar))
+    return write_pair_edges([this](double r, Site i, Site j) { return terms(r, i, j); }, cutoff_,
+                            list, box, positions, particles, network);
+  const bool far = p.gamma_far > 0.0, even = p.a == 0.0 || (p.s_bar == 1.0 && !far);
+  network.transverse = p.gamma_perp > 0.0;
+  if (network.transverse) network.constant_zeta_perp.vary();
+  if (!even) network.constant_k_c.vary();
+  if (p.a > 0.0) {
+    network.constant_f_c.vary();
+    network.constant_u.vary();
+  }
+  const auto& kernel = for_isa(kernels::edge_portable, kernels::edge_avx2, kernels::edge_avx512);
+  const kernels::DpdKernelParameters parameters{p.a, p.s_bar,  p.gamma,     p.gamma_perp,
+                                                p.s, p.cutoff, p.gamma_far, p.cutoff_far};
+  const auto fill = [&](PairNetwork<D>& n, std::size_t begin, std::size_t end) {
+    kernel.dpd(parameters, static_cast<int>(end - begin), &n.r[begin],
+               {&n.u[begin], &n.f_c[begin], even ? nullptr : &n.k_c[begin], &n.zeta_par[begin],
+                n.transverse ? &n.zeta_perp[begin] : nullptr});
+  };
+  write_edge_geometry<D>(list, cutoff_, box, positions, particles, fill, network);
+  if (even) network.constant_k_c.fill(network.k_c, p.a * p.s_bar / p.cutoff);
+  if (!network.transverse) network.constant_zeta_perp.fill(network.zeta_perp, 0.0);
+  if (p.a == 0.0) {
+    network.constant_f_c.fill(network.f_c, 0.0);
+    network.constant_u.fill(network.u, 0.0);
+  }
+  network.constant_kT.fill(network.kT, p.kT);
 }
 
 template class DpdModel<2>;

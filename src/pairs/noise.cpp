@@ -7,39 +7,99 @@
 
 namespace odpd {
 
+namespace {
+
+// A vector changes sign with the order of i and j, as e does: the force is a function of the pair.
 template <int D>
-EdgeNormals<D>::EdgeNormals(const CounterRandom& random, const PairNetwork<D>& network,
-                            const Particles<D>& particles, std::size_t k, std::uint64_t step)
-    : random_(random), e_(network.e[k]), step_(step) {
-  const std::int64_t id_i = particles.id[static_cast<std::size_t>(network.i[k])];
-  const std::int64_t id_j = particles.id[static_cast<std::size_t>(network.j[k])];
-  low_ = static_cast<std::uint64_t>(std::min(id_i, id_j));
-  high_ = static_cast<std::uint64_t>(std::max(id_i, id_j));
-  // A vector changes sign with the order of i and j, as e does: the force is a function of the pair.
-  sign_ = id_i < id_j ? 1.0 : -1.0;
+Vec<D> across_line(const Vec<D>& e, double sign, const std::array<double, 4>& w) {
+  Vec<D> n;
+  for (int c = 0; c < D; ++c) n[c] = sign * w[static_cast<std::size_t>(c)];
+  return n - dot(n, e) * e;
+}
+
+// Pairs drawn at once.
+constexpr std::size_t drawn_at_once = 256;
+
+// Identities of the edges first, first + 1, ...
+template <int D>
+struct PairBlock {
+  std::array<std::uint32_t, drawn_at_once> low, high;
+  std::size_t first, size;
+
+  PairBlock(const PairNetwork<D>& network, const Particles<D>& particles, std::int64_t begin,
+            std::int64_t end)
+      : first(static_cast<std::size_t>(begin)), size(static_cast<std::size_t>(end - begin)) {
+    for (std::size_t k = 0; k < size; ++k) {
+      const auto a =
+          static_cast<std::uint32_t>(particles.id[static_cast<std::size_t>(network.i[first + k])]);
+      const auto b =
+          static_cast<std::uint32_t>(particles.id[static_cast<std::size_t>(network.j[first + k])]);
+      low[k] = std::min(a, b);
+      high[k] = std::max(a, b);
+    }
+  }
+  std::span<const std::uint32_t> lows() const { return {low.data(), size}; }
+  std::span<const std::uint32_t> highs() const { return {high.data(), size}; }
+};
+
+template <int D>
+void add_across(const PairRandom& random, const PairBlock<D>& pairs, const PairNetwork<D>& network,
+                const Particles<D>& particles, double dt, std::vector<Vec<D>>& force) {
+  std::array<std::array<double, drawn_at_once>, 4> w;
+  random.four(pairs.lows(), pairs.highs(), {w[0], w[1], w[2], w[3]});
+  for (std::size_t n = 0; n < pairs.size; ++n) {
+    const std::size_t k = pairs.first + n;
+    const bool ascending = particles.id[static_cast<std::size_t>(network.i[k])] == pairs.low[n];
+    force[k] +=
+        std::sqrt(2.0 * network.kT[k] / dt * network.zeta_perp[k]) *
+        across_line<D>(network.e[k], ascending ? 1.0 : -1.0, {w[0][n], w[1][n], w[2][n], w[3][n]});
+  }
+}
+
+}  // namespace
+
+template <int D>
+EdgeNormals<D>::EdgeNormals(const PairRandom& random, const PairNetwork<D>& network,
+                            const Particles<D>& particles, std::size_t k)
+    : random_(random), e_(network.e[k]) {
+  const PairBlock<D> pair(network, particles, static_cast<std::int64_t>(k),
+                          static_cast<std::int64_t>(k) + 1);
+  low_ = pair.low[0];
+  high_ = pair.high[0];
+  sign_ = particles.id[static_cast<std::size_t>(network.i[k])] == low_ ? 1.0 : -1.0;
+}
+
+template <int D>
+double EdgeNormals<D>::along() const {
+  double w = 0.0;
+  random_.one({&low_, 1}, {&high_, 1}, {&w, 1});
+  return w;
 }
 
 template <int D>
 Vec<D> EdgeNormals<D>::across() const {
-  const auto w = random_.normals(step_, 1, low_, high_);
-  Vec<D> n;
-  for (int c = 0; c < D; ++c) n[c] = sign_ * w[static_cast<std::size_t>(c)];
-  return n - dot(n, e_) * e_;
+  std::array<double, 4> w;
+  random_.four(
+      {&low_, 1}, {&high_, 1},
+      {std::span(&w[0], 1), std::span(&w[1], 1), std::span(&w[2], 1), std::span(&w[3], 1)});
+  return across_line<D>(e_, sign_, w);
 }
 
 template <int D>
 void draw_edge_noise(const PairNetwork<D>& network, const Particles<D>& particles,
                      std::uint64_t seed, std::uint64_t step, double dt,
                      std::vector<Vec<D>>& force) {
-  const CounterRandom random(seed, Stream::pair_noise);
+  const PairRandom random(seed, step);
   force.resize(static_cast<std::size_t>(network.size()));
-  parallel_for(network.size(), [&](std::int64_t edge) {
-    const auto k = static_cast<std::size_t>(edge);
-    const EdgeNormals<D> w(random, network, particles, k, step);
-    const double strength = 2.0 * network.kT[k] / dt;
-    force[k] = std::sqrt(strength * network.zeta_par[k]) * w.along() * network.e[k];
-    if (network.zeta_perp[k] != 0.0)
-      force[k] += std::sqrt(strength * network.zeta_perp[k]) * w.across();
+  parallel_ranges(network.size(), drawn_at_once, [&](std::int64_t begin, std::int64_t end) {
+    const PairBlock<D> pairs(network, particles, begin, end);
+    std::array<double, drawn_at_once> w;
+    random.one(pairs.lows(), pairs.highs(), w);
+    for (std::size_t n = 0; n < pairs.size; ++n) {
+      const std::size_t k = pairs.first + n;
+      force[k] = std::sqrt(2.0 * network.kT[k] / dt * network.zeta_par[k]) * w[n] * network.e[k];
+    }
+    if (network.transverse) add_across(random, pairs, network, particles, dt, force);
   });
 }
 

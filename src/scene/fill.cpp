@@ -180,7 +180,11 @@ template <int D>
 void relax(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& surroundings,
            std::int64_t sweeps, Particles<D>& particles) {
   if (!model.conservative()) return;
-  PairList<D> list(box, model.cutoff(), 0.4 * model.cutoff());
+  // Random points lie in memory at random: beyond what a cache holds, every neighbour would be far away.
+  constexpr std::int64_t in_cache = 20000;
+  if (particles.size() > in_cache)
+    particles.reorder(spatial_order<D>(box, model.cutoff(), particles.position, particles.id));
+  PairList<D> list(box, model.cutoff());
   PairNetwork<D> network;
   const double longest = 0.05 * model.cutoff();
   for (std::int64_t sweep = 0; sweep < sweeps; ++sweep) {

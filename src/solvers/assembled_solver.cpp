@@ -23,6 +23,7 @@ std::vector<double> component_sums(std::span<const double> x, std::size_t block)
 
 void AssembledSolver::set_up() {
   response_.clear();
+  require_definite_diagonal(*system_);
   const Stopwatch watch;
   const BlockCsr& a = system_->matrix();
   assembly_seconds_ = watch.seconds();

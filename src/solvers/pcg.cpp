@@ -1,10 +1,13 @@
-// Preconditioned conjugate gradients on System::apply. On a projected system everything lives in
-// the range of Pi: the operator is Pi A Pi, the preconditioner Pi M^-1 Pi.
+// Preconditioned conjugate gradients. On a Resistance the work is done in single precision (mixed_cg.cpp); on any other
+// System in double, on System::apply. On a projected system everything lives in the range of Pi: the operator is
+// Pi A Pi, the preconditioner Pi M^-1 Pi.
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <typeinfo>
 #include <utility>
 
+#include "cg_engine.h"
 #include "odpd/core/parallel.h"
 #include "odpd/solvers/backends.h"
 #include "odpd/solvers/preconditioner.h"
@@ -13,42 +16,35 @@ namespace odpd {
 
 namespace {
 
-// Residuals of conjugate gradients rise and fall, but never by this much on a regular system.
-constexpr double divergence = 1e6;
-constexpr const char* diverged =
-    "the residual grows without bound: the matrix is singular and the forces are not balanced, as "
-    "for a group of "
-    "particles out of reach of all others; a weak pairwise friction of longer range "
-    "(fluid.rattler_friction) joins them";
-
-class ConjugateGradients : public Solver {
+class DoubleCg : public CgEngine {
  public:
-  ConjugateGradients(const SolverOptions& options, std::unique_ptr<Preconditioner> preconditioner)
-      : Solver(options), preconditioner_(std::move(preconditioner)) {}
-
- private:
-  void set_up() override {
-    preconditioner_->set_up(*system_);
-    for (auto* v : {&r_, &z_, &p_, &q_}) v->resize(index(system_->size()));
+  void set_up(const System& system) override {
+    system_ = &system;
+    preconditioner_.set_up(system);
+    for (auto* v : {&r_, &z_, &p_, &q_}) v->resize(index(system.size()));
+  }
+  Solver::Attempt attempt(std::span<const double> b, std::span<double> x, double tolerance,
+                          std::int64_t most_iterations) override;
+  std::int64_t memory_bytes() const override {
+    return preconditioner_.memory_bytes() +
+           static_cast<std::int64_t>(4 * r_.size() * sizeof(double));
   }
 
-  Attempt attempt(std::span<const double> b, std::span<double> x, double tolerance) override;
-  void cycle(std::span<double> x, double goal, Attempt& result);
+ private:
+  void cycle(std::span<double> x, double goal, std::int64_t most_iterations,
+             Solver::Attempt& result);
   double start(std::span<const double> b, std::span<const double> x);
   void project(std::span<double> v) const {
     if (system_->projected()) remove_mean(v, system_->block_size());
   }
-  std::int64_t memory_bytes() const override {
-    return preconditioner_->memory_bytes() +
-           static_cast<std::int64_t>(4 * r_.size() * sizeof(double));
-  }
 
-  std::unique_ptr<Preconditioner> preconditioner_;
+  const System* system_ = nullptr;
+  BlockJacobi preconditioner_;
   std::vector<double> r_, z_, p_, q_;
 };
 
 /// r := Pi (b - A x), the true residual; returns its norm.
-double ConjugateGradients::start(std::span<const double> b, std::span<const double> x) {
+double DoubleCg::start(std::span<const double> b, std::span<const double> x) {
   system_->apply(x, r_);
   parallel_for(system_->size(), [&](std::int64_t i) { r_[index(i)] = b[index(i)] - r_[index(i)]; });
   project(r_);
@@ -56,12 +52,13 @@ double ConjugateGradients::start(std::span<const double> b, std::span<const doub
 }
 
 /// Iterates until the recursive residual is below `goal`; sets ok, or leaves it and says why.
-void ConjugateGradients::cycle(std::span<double> x, double goal, Attempt& result) {
+void DoubleCg::cycle(std::span<double> x, double goal, std::int64_t most_iterations,
+                     Solver::Attempt& result) {
   const double first = fixed_norm(r_);
   double rho_before = 0.0;
-  while (result.iterations < iterations_left_) {
+  while (result.iterations < most_iterations) {
     ++result.iterations;
-    preconditioner_->apply(r_, z_);
+    preconditioner_.apply(r_, z_);
     project(z_);
     const double rho = fixed_dot(r_, z_);
     const double beta = rho_before == 0.0 ? 0.0 : rho / rho_before;
@@ -94,30 +91,65 @@ void ConjugateGradients::cycle(std::span<double> x, double goal, Attempt& result
   }
 }
 
-Solver::Attempt ConjugateGradients::attempt(std::span<const double> b, std::span<double> x,
-                                            double tolerance) {
-  Attempt result;
+Solver::Attempt DoubleCg::attempt(std::span<const double> b, std::span<double> x, double tolerance,
+                                  std::int64_t most_iterations) {
+  Solver::Attempt result;
   const double goal = tolerance * fixed_norm(b);
   double norm = start(b, x);
   // The recursive residual drifts from the true one: start over from the true one while that helps.
   while (norm > goal) {
     std::fill(p_.begin(), p_.end(), 0.0);
     result.ok = false;
-    cycle(x, goal, result);
+    cycle(x, goal, most_iterations, result);
     if (!result.ok) return result;
     const double before = norm;
     norm = start(b, x);
     if (!(norm < 0.5 * before)) break;
   }
-  if (std::isnan(norm)) result.failure = "numbers are no longer finite";
+  if (std::isnan(norm)) result.failure = no_longer_finite;
   result.ok = !std::isnan(norm);
   return result;
 }
 
+class ConjugateGradients : public Solver {
+ public:
+  explicit ConjugateGradients(const SolverOptions& options) : Solver(options) {}
+
+  void save(StateWriter& out) const override {
+    if (engine_) engine_->save(out);
+  }
+  void load(const StateReader& in, const System& system) override {
+    choose_engine(system);
+    engine_->load(in);
+  }
+
+ private:
+  void set_up() override {
+    choose_engine(*system_);
+    engine_->set_up(*system_);
+  }
+  // Kept from one bind to the next with what it remembers, while the systems are of one kind.
+  void choose_engine(const System& system) {
+    const std::type_info& kind = typeid(system);
+    if (engine_ && kind_ == &kind) return;
+    engine_ = make_mixed_cg(system, options_);
+    if (!engine_) engine_ = std::make_unique<DoubleCg>();
+    kind_ = &kind;
+  }
+  Attempt attempt(std::span<const double> b, std::span<double> x, double tolerance) override {
+    return engine_->attempt(b, x, tolerance, iterations_left_);
+  }
+  std::int64_t memory_bytes() const override { return engine_->memory_bytes(); }
+  std::string note() const override { return engine_->note(); }
+
+  std::unique_ptr<CgEngine> engine_;
+  const std::type_info* kind_ = nullptr;
+};
+
 }  // namespace
 
 std::unique_ptr<Solver> make_pcg(const SolverOptions& options) {
-  return std::make_unique<ConjugateGradients>(options, std::make_unique<BlockJacobi>());
+  return std::make_unique<ConjugateGradients>(options);
 }
 
 }  // namespace odpd

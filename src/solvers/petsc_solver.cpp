@@ -152,9 +152,9 @@ void fill(const BlockCsr& a, Mat matrix) {
 MatNullSpace translations(const System& system) {
   const PetscInt size = static_cast<PetscInt>(system.size());
   const PetscInt block = system.block_size();
-  std::vector<Vec> modes(index(block));
+  std::vector<::Vec> modes(index(block));
   for (PetscInt k = 0; k < block; ++k) {
-    Vec& mode = modes[index(k)];
+    ::Vec& mode = modes[index(k)];
     check(VecCreateSeq(PETSC_COMM_SELF, size, &mode));
     check(VecSetBlockSize(mode, block));
     check(VecSet(mode, 0.0));
@@ -162,7 +162,7 @@ MatNullSpace translations(const System& system) {
   }
   MatNullSpace space = nullptr;
   check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE, block, modes.data(), &space));
-  for (Vec& mode : modes) check(VecDestroy(&mode));
+  for (::Vec& mode : modes) check(VecDestroy(&mode));
   return space;
 }
 
@@ -172,7 +172,7 @@ MatNullSpace near_null_space(const System& system) {
   const bool rotates = !positions.empty() && system.periodic_directions() == 0 &&
                        system.block_size() == system.space_dimension() && system.block_size() > 1;
   if (!rotates) return translations(system);
-  Vec points = nullptr;
+  ::Vec points = nullptr;
   check(VecCreateSeqWithArray(PETSC_COMM_SELF, system.space_dimension(),
                               static_cast<PetscInt>(positions.size()), positions.data(), &points));
   MatNullSpace space = nullptr;
@@ -215,8 +215,8 @@ class PetscSolver : public AssembledSolver {
   std::int64_t bytes_ = 0;
   Mat matrix_ = nullptr;
   KSP ksp_ = nullptr;
-  Vec load_ = nullptr;  // the caller's arrays are placed into these two
-  Vec solution_ = nullptr;
+  ::Vec load_ = nullptr;  // the caller's arrays are placed into these two
+  ::Vec solution_ = nullptr;
 };
 
 void PetscSolver::destroy() {

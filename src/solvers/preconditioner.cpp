@@ -67,15 +67,15 @@ std::vector<double> block_diagonal(const System& system) {
   return blocks;
 }
 
-[[noreturn]] void reject_block(std::int64_t node) {
+}  // namespace
+
+void reject_block(std::int64_t node) {
   throw SolverError(fmt::format(
       "node {} is not held: its diagonal block is not positive definite (fewer independent "
       "neighbours than directions, or a negative weight); give the particles mass, or add a weak "
       "pairwise friction of longer range",
       node));
 }
-
-}  // namespace
 
 bool invert_definite(std::span<double> block, int size) {
   const std::size_t b = static_cast<std::size_t>(size);

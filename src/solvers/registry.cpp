@@ -48,6 +48,8 @@ const Row& find(const std::string& name) {
 
 }  // namespace
 
+std::vector<std::string> preconditioner_names() { return {"auto", "multilevel", "block-jacobi"}; }
+
 std::vector<std::string> solver_names() {
   std::vector<std::string> names;
   for (const Row& row : table) names.emplace_back(row.name);
@@ -81,6 +83,15 @@ std::unique_ptr<Solver> make_solver(const SolverOptions& options) {
         "solver.stopping = \"increment\" is the rule of picard and picard-deflated; {} stops by "
         "the residual",
         options.name));
+  const std::vector<std::string> preconditioners = preconditioner_names();
+  if (std::find(preconditioners.begin(), preconditioners.end(), options.preconditioner) ==
+      preconditioners.end())
+    throw ConfigError(
+        fmt::format("solver.preconditioner = \"{}\": no such preconditioner; the names are {}",
+                    options.preconditioner, fmt::join(preconditioners, ", ")));
+  if (options.preconditioner != "auto" && options.name != "pcg")
+    throw ConfigError(fmt::format(
+        "solver.preconditioner is a choice of solver.name = \"pcg\", not of \"{}\"", options.name));
   if (!options.petsc_options.empty() && options.name != "petsc")
     throw ConfigError(fmt::format("solver.petsc_options needs solver.name = \"petsc\", not \"{}\"",
                                   options.name));

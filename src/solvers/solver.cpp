@@ -34,7 +34,6 @@ void Solver::bind(const System& system) {
   const Stopwatch watch;
   system_ = nullptr;  // stays so when the set-up throws
   assembly_seconds_ = 0.0;
-  require_definite_diagonal(system);
   system_ = &system;
   generation_ = system.generation();
   try {
@@ -78,6 +77,7 @@ SolveReport Solver::solve(std::span<const double> b, std::span<double> x) {
   } else {
     iterate(norm, x, report);
   }
+  report.note = note();
   report.memory_bytes =
       memory_bytes() + static_cast<std::int64_t>((load_.capacity() + residual_.capacity() +
                                                   correction_.capacity() + refined_.capacity()) *

@@ -144,6 +144,9 @@ else
   expect_error 1 run box --set solver.name=petsc -- PETSc
 fi
 expect_error 1 run box --set 'solver.petsc_options="-pc_type jacobi"' -- solver.petsc_options
+expect_error 1 run box --set solver.preconditioner=ilu -- '--set solver.preconditioner' multilevel block-jacobi
+expect_error 1 run box --set solver.name=cholmod --set solver.preconditioner=multilevel -- '--set solver.preconditioner' pcg
+expect_error 1 env ODPD_ISA=mmx "$odpd" run box -- ODPD_ISA avx512 avx2 portable
 expect_error 1 run box --set solver.stopping=increment -- solver.stopping pcg
 expect_error 1 run box --set solver.tolerance=2.0 -- '--set solver.tolerance'
 expect_error 1 run box --set solver.max_iterations=0 -- '--set solver.max_iterations'

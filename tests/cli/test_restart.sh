@@ -299,6 +299,19 @@ for solver in eigen-cg picard; do
   same_run "$solver-1" "$solver-2" files
 done
 
+# --- the grid operator that pcg keeps from step to step survives a restart and a change of threads ---
+grid=(--set solver.preconditioner=multilevel --set run.duration=0.2)
+expect_exit 0 run many --threads 1 "${grid[@]}" --out grid
+expect_exit 0 run many --threads 2 "${grid[@]}" --set run.duration=0.05 --out grid-parts
+expect_exit 0 run many --threads 1 "${grid[@]}" --restart grid-parts/checkpoint.h5
+same_run grid grid-parts
+if "$odpd" info | grep -q 'kernels portable'; then
+  skip 'this processor has one instruction path only'
+else
+  expect_exit 0 env ODPD_ISA=portable "$odpd" run many --threads 1 "${grid[@]}" --restart grid-parts/checkpoint.h5 --set run.duration=0.21
+  expect_text "$err_text" 'instruction path'
+fi
+
 # --- every integrator: its arrays survive a restart and a change of threads ---
 for scheme in midpoint extrapolated implicit euler monte-carlo mass:trapezoidal mass:extrapolated mass:setd mass:velocity-verlet \
   mass:shardlow; do

@@ -1,9 +1,11 @@
+#include <Random123/philox.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <set>
 #include <vector>
 
@@ -12,6 +14,7 @@
 namespace {
 
 using odpd::CounterRandom;
+using odpd::PairRandom;
 using odpd::Stream;
 
 // A mean of n draws lies within 5 standard errors but once in 1.7e6; the seeds are fixed anyway.
@@ -138,6 +141,136 @@ TEST(Random, normals_of_one_counter_and_of_neighbouring_counters_are_uncorrelate
   for (const double sum : within) EXPECT_NEAR(sum / n, 0.0, allowed / std::sqrt(n));
   for (const double sum : within_squares) EXPECT_NEAR(sum / n, 0.0, 2.0 * allowed / std::sqrt(n));
   for (const double sum : between) EXPECT_NEAR(sum / n, 0.0, allowed / std::sqrt(n));
+}
+
+// Philox4x32-10 of Random123, and the numbers made of its words as core/random.h says, by the standard library.
+TEST(PairRandom, follows_its_definition) {
+  for (const std::uint64_t seed : {std::uint64_t{1}, std::uint64_t{0xfedcba9876543210}}) {
+    for (const std::uint64_t step : {std::uint64_t{0}, std::uint64_t{0x7123456789abcdef}}) {
+      const PairRandom random(seed, step);
+      std::vector<std::uint32_t> a, b;
+      for (std::uint32_t k = 0; k < 300; ++k) {
+        a.push_back(k * 77u);
+        b.push_back(~k);
+      }
+      std::vector<double> w(a.size());
+      std::array<std::vector<double>, 4> four;
+      for (auto& column : four) column.resize(a.size());
+      random.one(a, b, w);
+      random.four(a, b, {four[0], four[1], four[2], four[3]});
+      for (std::size_t k = 0; k < a.size(); ++k) {
+        const auto words = [&](std::uint64_t stage) {
+          const std::uint64_t when = 2 * step + stage;
+          const r123::Philox4x32::ctr_type counter{{a[k], b[k], static_cast<std::uint32_t>(when),
+                                                    static_cast<std::uint32_t>(when >> 32)}};
+          const r123::Philox4x32::key_type key{
+              {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
+          return r123::Philox4x32{}(counter, key);
+        };
+        const double turn = 2.0 * std::numbers::pi;
+        const auto along = words(0), across = words(1);
+        const std::uint64_t bits = along[0] | (static_cast<std::uint64_t>(along[1]) << 32);
+        const double u = (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52;
+        const double v = (along[2] + 0.5) * 0x1p-32;
+        EXPECT_NEAR(w[k], std::sqrt(-2.0 * std::log(u)) * std::cos(turn * v), 1e-11);
+        for (std::size_t pair = 0; pair < 2; ++pair) {
+          const std::uint32_t high = across[2 * pair], low = across[2 * pair + 1];
+          const double radius =
+              std::sqrt(-2.0 * std::log((high * 256.0 + (low & 0xffu) + 0.5) * 0x1p-40));
+          const double angle = turn * ((low >> 8) + 0.5) * 0x1p-24;
+          EXPECT_NEAR(four[2 * pair][k], radius * std::cos(angle), 1e-8);
+          EXPECT_NEAR(four[2 * pair + 1][k], radius * std::sin(angle), 1e-8);
+        }
+        // Alone, a pair gets the same bits.
+        double single = 0.0;
+        random.one({&a[k], 1}, {&b[k], 1}, {&single, 1});
+        EXPECT_EQ(single, w[k]);
+      }
+    }
+  }
+}
+
+// Moments, and shares of a normal distribution beyond |w| = 2 and 4.
+void expect_normal(const std::vector<double>& w) {
+  const double n = static_cast<double>(w.size());
+  std::array<double, 5> moment{};
+  constexpr std::array<double, 2> limit{2.0, 4.0};
+  std::array<double, 2> beyond{};
+  for (const double x : w) {
+    for (std::size_t k = 1; k < 5; ++k) moment[k] += std::pow(x, static_cast<double>(k)) / n;
+    for (std::size_t t = 0; t < 2; ++t) beyond[t] += std::abs(x) > limit[t] ? 1.0 / n : 0.0;
+  }
+  EXPECT_NEAR(moment[1], 0.0, allowed * std::sqrt(1.0 / n));
+  EXPECT_NEAR(moment[2], 1.0, allowed * std::sqrt(2.0 / n));
+  EXPECT_NEAR(moment[3], 0.0, allowed * std::sqrt(15.0 / n));
+  EXPECT_NEAR(moment[4], 3.0, allowed * std::sqrt(96.0 / n));
+  for (std::size_t t = 0; t < 2; ++t) {
+    const double p = std::erfc(limit[t] / std::sqrt(2.0));
+    EXPECT_NEAR(beyond[t], p, allowed * std::sqrt(p * (1.0 - p) / n));
+  }
+}
+
+// n pairs of neighbouring identities, as a fluid has them.
+void neighbouring_pairs(std::uint32_t n, std::vector<std::uint32_t>& a,
+                        std::vector<std::uint32_t>& b) {
+  for (std::uint32_t k = 0; k < n; ++k) {
+    a.push_back(k / 8);
+    b.push_back(k / 8 + 1 + k % 8);
+  }
+}
+
+TEST(PairRandom, numbers_are_normal_and_reach_into_the_tails) {
+  std::vector<std::uint32_t> a, b;
+  constexpr std::uint32_t n = 1000000;
+  neighbouring_pairs(n, a, b);
+  std::vector<double> w(n);
+  std::array<std::vector<double>, 4> four;
+  for (auto& column : four) column.resize(n);
+  const PairRandom random(7, 12);
+  random.one(a, b, w);
+  random.four(a, b, {four[0], four[1], four[2], four[3]});
+  expect_normal(w);
+  for (const auto& column : four) expect_normal(column);
+  // The largest of 5e6: beyond 4.6 and below 6.5, but for once in 1e9 (2 5e6 Q(6.5) = 4e-4 is the weaker bound).
+  double largest = 0.0;
+  for (const auto* column : {&w, &four[0], &four[1], &four[2], &four[3]})
+    for (const double x : *column) largest = std::max(largest, std::abs(x));
+  EXPECT_GT(largest, 4.6);
+  EXPECT_LT(largest, 6.5);
+}
+
+TEST(PairRandom, numbers_of_neighbouring_keys_are_independent) {
+  std::vector<std::uint32_t> a, b;
+  constexpr std::uint32_t n = 200000;
+  neighbouring_pairs(n, a, b);
+  const auto one = [&](std::uint64_t seed, std::uint64_t step, const auto& low, const auto& high) {
+    std::vector<double> w(n);
+    PairRandom(seed, step).one(low, high, w);
+    return w;
+  };
+  std::array<std::vector<double>, 4> four;
+  for (auto& column : four) column.resize(n);
+  PairRandom(3, 5).four(a, b, {four[0], four[1], four[2], four[3]});
+  const std::vector<double> w = one(3, 5, a, b);
+  std::vector<double> next_pair(w.begin() + 1, w.end());
+  next_pair.push_back(w.front());
+  std::vector<std::vector<double>> others = {
+      one(3, 6, a, b), one(3, 5 + (std::uint64_t{1} << 31), a, b),
+      one(4, 5, a, b), one(3 + (std::uint64_t{1} << 32), 5, a, b),
+      one(3, 5, b, a), next_pair};
+  others.insert(others.end(), four.begin(), four.end());
+  others.push_back(w);
+  // Mean of products of independent standard normals: error 1/sqrt(n), of their squares less one 2/sqrt(n).
+  for (std::size_t x = 0; x < others.size(); ++x)
+    for (std::size_t y = 0; y < x; ++y) {
+      double product = 0.0, squares = 0.0;
+      for (std::size_t k = 0; k < n; ++k) {
+        product += others[x][k] * others[y][k] / n;
+        squares += (others[x][k] * others[x][k] - 1.0) * (others[y][k] * others[y][k] - 1.0) / n;
+      }
+      EXPECT_NEAR(product, 0.0, allowed / std::sqrt(n)) << x << " with " << y;
+      EXPECT_NEAR(squares, 0.0, 2.0 * allowed / std::sqrt(n)) << x << " with " << y;
+    }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -93,6 +94,21 @@ TYPED_TEST(PairListTest, EqualsBruteForce) {
   }
 }
 
+// A few particles in many cells, most of them empty, two, three or more to a direction.
+TYPED_TEST(PairListTest, EqualsBruteForceAmongEmptyCells) {
+  constexpr int D = TypeParam::D;
+  std::int64_t pairs = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const Box<D> box = make_box<D>(2.5 + 0.01 * static_cast<double>(seed), (1 << D) - 1);
+    const auto r = support::random_points<D>(Vec<D>{}, box.size, 4 + seed % 20, seed);
+    PairList<D> list(box, 1.0, 0.0);
+    list.update(r);
+    ASSERT_EQ(rows_of(list, box, r, 1.0), brute_force(box, r, 1.0)) << "seed " << seed;
+    pairs += list.pairs();
+  }
+  EXPECT_GT(pairs, 400);
+}
+
 TYPED_TEST(PairListTest, FindsPointsOutsideBoundedDirections) {
   constexpr int D = TypeParam::D;
   Box<D> box = make_box<D>(4.0, 1);
@@ -151,10 +167,70 @@ TYPED_TEST(PairListTest, IsRebuiltWhenOneParticleMovedFurther) {
   EXPECT_EQ(list.rows(), 99);
 }
 
+// Left to itself the list misses no pair, searches at every update where particles move far and keeps what it found where
+// they do not.
+TYPED_TEST(PairListTest, ChoosesItsSkinByTheMotion) {
+  constexpr int D = TypeParam::D;
+  const Box<D> box = make_box<D>(4.0, 1);
+  for (const double step : {0.3, 0.002}) {
+    auto r = support::random_points<D>(Vec<D>{}, box.size, 200, 8);
+    PairList<D> list(box, 1.0);
+    constexpr std::uint64_t updates = 100;
+    for (std::uint64_t k = 0; k < updates; ++k) {
+      const auto steps = support::random_vectors<D>(r.size(), 20 + k);
+      for (std::size_t i = 0; i < r.size(); ++i) {
+        r[i] += step / norm(steps[i]) * steps[i];
+        box.wrap(r[i]);
+      }
+      list.update(r);
+      ASSERT_EQ(rows_of(list, box, r, 1.0), brute_force(box, r, 1.0)) << "step " << k;
+    }
+    if (step > 0.1) {
+      EXPECT_EQ(list.skin(), 0.0);
+      EXPECT_EQ(list.rebuilds(), updates);
+    } else {
+      EXPECT_GT(list.skin(), step);
+      EXPECT_LT(list.rebuilds(), updates / 4);
+    }
+  }
+}
+
+TYPED_TEST(PairListTest, ACoordinateThatIsNoNumberSpoilsNoOtherRow) {
+  constexpr int D = TypeParam::D;
+  const Box<D> box = make_box<D>(5.0, 1);
+  auto r = support::random_points<D>(Vec<D>{}, box.size, 200, 8);
+  PairList<D> list(box, 1.0, 0.3);
+  list.update(r);
+  const double good = r[70][0];
+  r[70][0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(list.update(r));
+  EXPECT_EQ(rows_of(list, box, r, 1.0), brute_force(box, r, 1.0));
+  EXPECT_TRUE(list.update(r));
+  r[70][0] = good;
+  EXPECT_TRUE(list.update(r));
+  EXPECT_EQ(rows_of(list, box, r, 1.0), brute_force(box, r, 1.0));
+}
+
+// Many particles in one place: rows longer than what kernels sort.
+TYPED_TEST(PairListTest, LongRowsAreSorted) {
+  constexpr int D = TypeParam::D;
+  const Box<D> box = make_box<D>(4.0, 1);
+  std::vector<Vec<D>> r =
+      support::random_points<D>(support::uniform_vec<D>(1.0), support::uniform_vec<D>(1.5), 300, 8);
+  PairList<D> list(box, 1.0, 0.0);
+  list.update(r);
+  const Rows expected = brute_force(box, r, 1.0);
+  EXPECT_GT(expected[0].size(), 200u);
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    const auto row = list.partners(static_cast<std::int64_t>(i));
+    EXPECT_EQ(std::vector<std::int32_t>(row.begin(), row.end()), expected[i]);
+  }
+}
+
 TYPED_TEST(PairListTest, HasTheSameRowsOnAnyThreadCount) {
   constexpr int D = TypeParam::D;
-  const Box<D> box = make_box<D>(D == 2 ? 20.0 : 7.0, 1);
-  const auto r = support::random_points<D>(Vec<D>{}, box.size, 1500, 4);
+  const Box<D> box = make_box<D>(D == 2 ? 35.0 : 11.0, 1);
+  const auto r = support::random_points<D>(Vec<D>{}, box.size, 5000, 4);
   PairList<D> one(box, 1.0, 0.3);
   one.update(r);
   const Rows expected = rows_of(one, box, r, 1.3);

@@ -114,4 +114,53 @@ TYPED_TEST(EdgeSumsTest, HaveTheSameBitsOnAnyThreadCount) {
   }
 }
 
+// The sums read the edges as they lie, or through the index where they are not ordered: in the same order for each particle.
+TYPED_TEST(EdgeSumsTest, HaveTheSameBitsWithAndWithoutOrderedRows) {
+  constexpr int D = TypeParam::D;
+  Fluid<D> fluid(D == 2 ? 15.0 : 7.0, true, 1200, 2);
+  fluid.connect(DpdModel<D>(1, {transverse()}));
+  const auto velocity = support::random_vectors<D>(1200, 2);
+  std::vector<std::vector<Vec<D>>> forces;
+  for (const bool ordered : {true, false}) {
+    EXPECT_EQ(fluid.network.first.empty(), !ordered);
+    std::vector<Vec<D>> force(1200);
+    odpd::add_conservative_forces(fluid.network, force);
+    odpd::add_friction_forces<D>(fluid.network, velocity, force);
+    odpd::add_spring_forces<D>(fluid.network, velocity, force);
+    forces.push_back(force);
+    const auto start = fluid.network.start;
+    const auto edge = fluid.network.edge;
+    fluid.network.index_edges();
+    EXPECT_EQ(fluid.network.start, start);
+    EXPECT_EQ(fluid.network.edge, edge);
+  }
+  EXPECT_EQ(forces[0], forces[1]);
+}
+
+TYPED_TEST(EdgeSumsTest, FrictionOfKnownParticlesIsThatOfTheirMotionAlone) {
+  constexpr int D = TypeParam::D;
+  Fluid<D> fluid(5.0, true, D == 2 ? 120 : 500, 2, 1.0);
+  fluid.connect(DpdModel<D>(1, {transverse()}));
+  const std::size_t n = fluid.particles.position.size();
+  auto velocity = support::random_vectors<D>(n, 2);
+  std::vector<std::int32_t> known;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (fluid.particles.is_free(i)) {
+      velocity[i] = Vec<D>{};
+    } else {
+      known.push_back(static_cast<std::int32_t>(i));
+    }
+  }
+  std::vector<Vec<D>> all(n), some(n);
+  odpd::add_friction_forces<D>(fluid.network, velocity, all);
+  odpd::add_known_friction<D>(fluid.network, known, velocity, some);
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!fluid.particles.is_free(i)) continue;
+    EXPECT_EQ(some[i], all[i]);
+    moved += norm(all[i]) > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(moved, 10u);
+}
+
 }  // namespace

@@ -129,9 +129,9 @@ TYPED_TEST(EdgesTest, HaveTheSameBitsOnAnyThreadCountAndSkin) {
   const DpdModel<D> model = two_species<D>();
   fluid.connect(model);
   const PairNetwork<D> one = fluid.network;
-  for (const int threads : {2, 3}) {
+  for (const int threads : {1, 2, 3}) {
     odpd::set_threads(threads, 0);
-    fluid.connect(model, 0.1 * threads);
+    fluid.connect(model, 0.2 * (threads - 1));
     odpd::set_threads(1, 0);
     EXPECT_EQ(fluid.network.i, one.i);
     EXPECT_EQ(fluid.network.j, one.j);
@@ -140,6 +140,44 @@ TYPED_TEST(EdgesTest, HaveTheSameBitsOnAnyThreadCountAndSkin) {
     EXPECT_EQ(fluid.network.zeta_par, one.zeta_par);
     EXPECT_EQ(fluid.network.edge, one.edge);
   }
+}
+
+// Every exponent that has a kernel, and some that have none, with and without the rest of the model; the network is used again
+// and again, as in a run, so that what one model leaves must not show in the next.
+TYPED_TEST(EdgesTest, CarryTheTermsOfThePairModel) {
+  constexpr int D = TypeParam::D;
+  Fluid<D> fluid(3.3, true, D == 2 ? 61 : 121, 5, 0.6);
+  for (const double s : {0.5, 1.0, 2.0, 0.0, 0.7})
+    for (const double s_bar : {0.5, 1.0, 2.0, 1.5})
+      for (int rest = 0; rest < 8; ++rest) {
+        DpdParameters p;
+        p.s = s;
+        p.s_bar = s_bar;
+        p.cutoff = 1.1;
+        p.kT = 0.7;
+        p.gamma_perp = rest % 2 == 1 ? 1.3 : 0.0;
+        p.gamma_far = rest / 2 % 2 == 1 ? 0.2 : 0.0;
+        p.cutoff_far = 1.5;
+        p.a = rest / 4 == 1 ? 0.0 : 18.5;
+        const DpdModel<D> model(1, {p});
+        fluid.connect(model, 0.0);
+        const PairNetwork<D>& n = fluid.network;
+        EXPECT_EQ(n.transverse, p.gamma_perp > 0.0);
+        ASSERT_GT(n.size(), 100);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(n.size()); ++k) {
+          const odpd::PairTerms t = model.pair(n.r[k], {}, {});
+          const auto expect_near = [](double value, double expected) {
+            // 1 - r/r_c loses digits at the cutoff.
+            EXPECT_NEAR(value, expected, 1e-7 * std::abs(expected) + 1e-13);
+          };
+          expect_near(n.u[k], t.u);
+          expect_near(n.f_c[k], t.f_c);
+          expect_near(n.k_c[k], t.k_c);
+          expect_near(n.zeta_par[k], t.zeta_par);
+          expect_near(n.zeta_perp[k], t.zeta_perp);
+          EXPECT_EQ(n.kT[k], t.kT);
+        }
+      }
 }
 
 TYPED_TEST(EdgesTest, AnExactOverlapHasAFixedFiniteDirection) {

@@ -44,7 +44,7 @@ class Simulation {
   const Frame& last_good() const { return last_good_; }
   /// A time step to go on with after a blow-up.
   double smaller_step() const {
-    return watch_of_state_.smaller_step(settings_.integrator, judged_, clock_.dt);
+    return watch_of_state_.smaller_step(settings_.integrator, judged(), clock_.dt);
   }
   bool stopped_at_target() const { return stopped_at_target_; }
 
@@ -66,6 +66,8 @@ class Simulation {
   void check_observables(const Config& config) const;
   void check_observable(const Config& entry) const;
   void stop_at_target();
+  /// The state that was judged last.
+  Stage<D>& judged() const { return integrator_->spare_stage(); }
 
   Config config_;
   CaseSettings settings_;
@@ -77,7 +79,6 @@ class Simulation {
   std::int64_t alarm_crossings_ = 0;
   bool alarmed_ = false;  // the user was told once
   BlowUpWatch<D> watch_of_state_;
-  Stage<D> judged_;  // the state that was judged last
   std::int64_t judged_step_ = -1;
   Frame last_good_;
   bool stopped_at_target_ = false;

@@ -5,14 +5,22 @@
 //
 // Nothing is stored and nothing is drawn in sequence, so numbers depend neither on the order of the
 // particles in memory nor on threads or restarts.
+//
+// The noise of the edges, millions of numbers per step, comes from the generator's smaller sister Philox4x32-10:
+//
+//   key = seed (64 bits), counter = (a, b, 64 bits of 2 step + stage)  ->  4 x 32 random bits
+//
+// For one seed the map from counters to bits is one to one, so any two of (step < 2^63, stage 0 or 1, a, b < 2^32) differ in
+// them. No other purpose draws from it, which keeps it apart from all the streams below.
 #include <array>
 #include <cstdint>
+#include <span>
 
 namespace odpd {
 
 /// What a number is for. Two uses never share a stream, so adding one changes no other.
 enum class Stream : std::uint64_t {
-  pair_noise = 1,       ///< F_B of an edge: counter (step, 0 along / 1 across, lower id, higher id)
+  pair_noise = 1,  ///< stands for F_B of the edges, drawn by PairRandom (stage 0 along, 1 across)
   start_positions = 2,  ///< random filling: counter (0, attempt, id, 0)
   start_species = 3,    ///< which particle gets which species: counter (0, 0, id, 0)
   overlap_direction =
@@ -39,6 +47,23 @@ class CounterRandom {
  private:
   std::uint64_t seed_;
   std::uint64_t stream_;
+};
+
+/// Independent standard normal numbers of many pairs (a, b) in one step, by Box-Muller, sqrt(-2 log u) cos(2 pi v), with
+/// polynomials for log and cos whose relative error is below 1e-12. Bits are those of the instruction path (core/isa.h),
+/// whatever the number of pairs asked for at once.
+class PairRandom {
+ public:
+  PairRandom(std::uint64_t seed, std::uint64_t step) : seed_(seed), step_(step) {}
+  /// One number per pair: u of 52 bits, v of 32; |w| <= 8.6.
+  void one(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b,
+           std::span<double> w) const;
+  /// Four per pair, out[c][k], independent of `one`: u of 40 bits, v of 24; |w| <= 7.6.
+  void four(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b,
+            const std::array<std::span<double>, 4>& w) const;
+
+ private:
+  std::uint64_t seed_, step_;
 };
 
 }  // namespace odpd

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "odpd/core/timer.h"
@@ -22,7 +23,8 @@ namespace odpd {
 
 struct DynamicsSettings {
   std::uint64_t seed = 1;
-  double skin = 0.4;                 ///< of the pair list (length)
+  std::optional<double> skin =
+      {};  ///< of the pair list (length); none: what the motion makes cheapest
   bool hold_centre_of_mass = false;  ///< solve the problem of Scheme 2
   std::int64_t reorder_every = 100;  ///< steps between spatial reorderings of memory; 0: never
   double mass = 0.0;                 ///< of every free particle
@@ -42,8 +44,9 @@ struct SolverStatistics {
   std::int64_t iterations = 0;
   std::int64_t most_iterations = 0;
   double worst_residual = 0.0;
-  std::int64_t clamped = 0;  ///< negative stiffnesses that an implicit step left out
-  std::string problem;       ///< which problem was solved, in words
+  std::int64_t fallbacks = 0;  ///< solves whose preconditioner was given up
+  std::int64_t clamped = 0;    ///< negative stiffnesses that an implicit step left out
+  std::string problem;         ///< which problem was solved, in words
 };
 
 template <int D>
@@ -114,6 +117,7 @@ class Dynamics {
   const PairList<D>& pair_list() const { return list_; }
   const DofMap<D>& dofs();
   Solver& solver() { return *solver_; }
+  const Solver& solver() const { return *solver_; }
   PhaseSeconds& phases() { return phases_; }
   const PhaseSeconds& phases() const { return phases_; }
   SolverStatistics& statistics() { return statistics_; }

@@ -45,6 +45,10 @@ class Integrator {
   virtual void save(StateWriter&) const {}
   virtual void load(const StateReader&) {}
 
+  /// Room for a stage between two steps, for whoever must look at the state; the next step overwrites it. (The edges of a
+  /// million particles are most of a run's memory.)
+  Stage<D>& spare_stage() { return record_.corrector; }
+
  protected:
   using Unknowns = typename Dynamics<D>::Unknowns;
 

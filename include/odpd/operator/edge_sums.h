@@ -23,6 +23,12 @@ template <int D>
 void add_friction_forces(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
                          std::vector<Vec<D>>& force);
 
+/// The same on the partners of the particles `known` (places in memory, ascending), for the motion of those alone: `velocity`
+/// of all others is zero. Costs as much as they have edges.
+template <int D>
+void add_known_friction(const PairNetwork<D>& network, std::span<const std::int32_t> known,
+                        std::span<const Vec<D>> velocity, std::vector<Vec<D>>& force);
+
 /// force[p] -= (K v)_p with K = sum over edges of max(k_c, 0) e e^T, the linearised conservative force along the line of
 /// centres.
 template <int D>

@@ -19,6 +19,18 @@ namespace odpd {
 template <int D>
 class Resistance : public System {
  public:
+  using Block = std::array<double, static_cast<std::size_t>(D* D)>;  ///< row-major
+  /// An edge as one of its two free particles sees it.
+  struct Link {
+    std::int32_t edge = 0;  ///< of the network
+    std::int32_t node = 0;  ///< the other end
+  };
+  /// What friction across e adds to an edge; kept only where there is any.
+  struct Across {
+    double zeta_perp = 0.0;
+    double sign = 1.0;  ///< of zeta_par - zeta_perp
+  };
+
   /// hold_centre_of_mass: solve the constrained problem (operator/system.h) where R is definite.
   explicit Resistance(const Box<D>& box, bool hold_centre_of_mass = false)
       : box_(box), hold_(hold_centre_of_mass) {}
@@ -43,35 +55,51 @@ class Resistance : public System {
   bool holds_centre_of_mass() const override { return hold_ && !translations_are_null_; }
   std::uint64_t generation() const override { return generation_; }
 
- private:
-  // One direction of an edge between two free particles.
-  struct Link {
-    Vec<D> g;               ///< sqrt(|zeta_par - zeta_perp|) e
-    std::int32_t node = 0;  ///< the other one
-  };
-  // What friction across e adds to a link; kept only where there is any.
-  struct Across {
-    double zeta_perp = 0.0;
-    double sign = 1.0;  ///< of zeta_par - zeta_perp
-  };
-  using Block = std::array<double, static_cast<std::size_t>(D* D)>;  // row-major
+  /// The rows: a node's links, in the order of the edges; both ends of an edge have one.
+  std::span<const Link> links(std::size_t node) const {
+    const auto begin = static_cast<std::size_t>(start_[node]);
+    return std::span<const Link>(links_).subspan(
+        begin, static_cast<std::size_t>(start_[node + 1]) - begin);
+  }
+  /// g = sqrt(|zeta_par - zeta_perp|) e of an edge.
+  const Vec<D>& g(const Link& link) const { return g_[static_cast<std::size_t>(link.edge)]; }
+  const Across& across(const Link& link) const {
+    return across_[static_cast<std::size_t>(link.edge)];
+  }
+  /// Friction of each node with particles of known velocity, and the shift (empty: none).
+  std::span<const Block> anchors() const { return anchor_; }
+  std::span<const Block> diagonal() const { return diagonal_; }
+  bool transverse() const { return !across_.empty(); }
+  const Box<D>& box() const { return box_; }
+  double shift() const { return shift_; }
+  double stiffness_time() const { return stiffness_time_; }
 
-  Vec<D> pull(std::size_t link, const Vec<D>& slip) const;
+ private:
+  Vec<D> pull(const Link& link, const Vec<D>& slip) const;
   template <bool transverse>
   Vec<D> row_product(std::size_t node, std::span<const double> x) const;
+  void weigh_edges(const PairNetwork<D>& network);
+  void count_links(const PairNetwork<D>& network, const DofMap<D>& dofs);
   void fill_row(std::size_t node, std::int32_t particle, const PairNetwork<D>& network,
                 const DofMap<D>& dofs);
-  void check_clusters(const DofMap<D>& dofs, const Particles<D>& particles) const;
+  /// The link carries friction.
+  bool ties(const Link& link) const {
+    return dot(g(link), g(link)) > 0.0 || (!across_.empty() && across(link).zeta_perp > 0.0);
+  }
+  void check_clusters(const DofMap<D>& dofs, const Particles<D>& particles);
   void check_rattlers(const PairNetwork<D>& network, const DofMap<D>& dofs,
                       const Particles<D>& particles) const;
 
   Box<D> box_;
   bool hold_;
   std::int64_t nodes_ = 0;
-  std::vector<std::int64_t> start_;  // rows of links_, both directions of an edge stored
+  std::vector<Vec<D>> g_;            // per edge of the network
+  std::vector<Across> across_;       // per edge, or empty
+  std::vector<std::int64_t> start_;  // rows of links_
   std::vector<Link> links_;
-  std::vector<Across> across_;  // one per link, or empty
+  std::vector<std::int32_t> parent_;  // per node its lowest neighbour; then of check_clusters
   std::vector<Block> anchor_;  // per node: friction with particles of known velocity, and the shift
+  std::vector<Block> diagonal_;  // per node: all of its friction, and the shift
   double shift_ = 0.0;
   double stiffness_time_ = 0.0;
   bool translations_are_null_ = false;

@@ -4,6 +4,7 @@
 //   R = sum_edges J^T Z J,  Z = zeta_par e e^T + zeta_perp (I - e e^T),  F_B = sum_edges J^T sqrt(2 kT Z/dt) w,
 //
 // with J the map from the two velocities to the slip v_i - v_j.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -37,6 +38,8 @@ struct PairNetwork {
   // The edges of each particle, in fixed order: edge[start[p]] .. edge[start[p+1]-1].
   std::vector<std::int64_t> start;
   std::vector<std::int32_t> edge;
+  // Those that have it as i: first[p] .. first[p+1]-1. Empty when the edges are not ordered by i.
+  std::vector<std::int64_t> first;
 
   std::int64_t size() const { return static_cast<std::int64_t>(i.size()); }
   std::span<const std::int32_t> edges_of(std::int64_t particle) const {
@@ -45,10 +48,27 @@ struct PairNetwork {
     return std::span<const std::int32_t>(edge).subspan(b, n);
   }
   void resize(std::int64_t edges);
-  /// Fills start and edge from i and j.
+  /// Fills start and edge from i and j, whatever the order of the edges; `first` becomes empty.
   void index_edges();
+  /// The same for edges ordered by (i, j), from i, j and `first`, on all threads.
+  void index_rows();
   /// Bytes held, for reports.
   std::int64_t bytes() const;
+
+  /// A column that is the same number in many scenes is written once, and then only where it grew.
+  class ConstantColumn {
+   public:
+    void fill(std::vector<double>& column, double value);
+    /// The column is about to be written edge by edge.
+    void vary() { filled_ = 0; }
+    void cut(std::size_t size) { filled_ = std::min(filled_, size); }
+
+   private:
+    double value_ = 0.0;
+    std::size_t filled_ = 0;
+  };
+  ConstantColumn constant_k_c, constant_zeta_perp, constant_kT, constant_f_c, constant_u;
+  std::vector<std::int32_t> scratch, next;  ///< of whoever writes the edges, and of the index
 };
 
 }  // namespace odpd

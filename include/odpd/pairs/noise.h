@@ -17,17 +17,16 @@ namespace odpd {
 template <int D>
 class EdgeNormals {
  public:
-  /// `random` is that of Stream::pair_noise.
-  EdgeNormals(const CounterRandom& random, const PairNetwork<D>& network,
-              const Particles<D>& particles, std::size_t k, std::uint64_t step);
-  double along() const { return random_.normal(step_, 0, low_, high_); }
+  EdgeNormals(const PairRandom& random, const PairNetwork<D>& network,
+              const Particles<D>& particles, std::size_t k);
+  double along() const;
   /// Normal in the directions across e, zero along it.
   Vec<D> across() const;
 
  private:
-  const CounterRandom& random_;
+  PairRandom random_;
   Vec<D> e_;
-  std::uint64_t step_, low_, high_;
+  std::uint32_t low_, high_;
   double sign_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Preconditioners of the native solvers: z = M^-1 r with M symmetric positive definite.
+// Block-Jacobi for solvers in double on any System: z = D^-1 r, D the block diagonal of A.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,26 +10,19 @@ namespace odpd {
 
 /// Throws SolverError naming the first node whose diagonal block is not positive definite.
 void require_definite_diagonal(const System& system);
+/// Throws that error for this node.
+[[noreturn]] void reject_block(std::int64_t node);
 
 /// Replaces a symmetric b x b block (row-major) by its inverse; false, and the block spoilt, when
 /// it is not positive definite to rounding.
 bool invert_definite(std::span<double> block, int b);
 
-class Preconditioner {
+class BlockJacobi {
  public:
-  virtual ~Preconditioner() = default;
-  virtual void set_up(const System& system) = 0;
-  /// z = M^-1 r; the same bits on any thread count.
-  virtual void apply(std::span<const double> r, std::span<double> z) const = 0;
-  virtual std::int64_t memory_bytes() const = 0;
-};
-
-/// M = D, the block diagonal of A.
-class BlockJacobi : public Preconditioner {
- public:
-  void set_up(const System& system) override;
-  void apply(std::span<const double> r, std::span<double> z) const override;
-  std::int64_t memory_bytes() const override;
+  void set_up(const System& system);
+  /// z = D^-1 r; the same bits on any thread count.
+  void apply(std::span<const double> r, std::span<double> z) const;
+  std::int64_t memory_bytes() const;
 
  private:
   int block_ = 1;

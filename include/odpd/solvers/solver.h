@@ -3,7 +3,7 @@
 //
 //   picard           x := x + D^-1 (b - A x), D diagonal blocks (Phan-Thien et al. 2016, eq. 24)
 //   picard-deflated  x := x + D^-1 Pi (b - A x) - E E^T x, Scheme 2  (ibid., eq. 41-46)
-//   pcg              conjugate gradients, block-Jacobi preconditioned, on the rank-1 operator
+//   pcg              conjugate gradients on the rank-1 operator in mixed precision, multilevel or block-Jacobi preconditioned
 //   eigen-cg         Eigen::ConjugateGradient on the assembled matrix
 //   cholmod          SuiteSparse sparse Cholesky
 //   petsc            PETSc KSP, any KSP and PC through PETSc options
@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "odpd/core/archive.h"
 #include "odpd/operator/system.h"
 
 namespace odpd {
@@ -30,6 +31,8 @@ struct SolverOptions {
   std::int64_t max_iterations = 100000;
   Stopping stopping = Stopping::residual;
   std::string petsc_options = {};  ///< "-ksp_type cg -pc_type icc", without a prefix
+  /// Of pcg: "multilevel", "block-jacobi", or "auto" (docs/solvers.md).
+  std::string preconditioner = "auto";
 };
 
 struct SolveReport {
@@ -45,6 +48,7 @@ struct SolveReport {
   std::string
       problem;  ///< "R v = f", "R v = f, null space removed", or "centre of mass held still"
   std::string failure;  ///< why it did not converge, with the remedy; empty when it did
+  std::string note;     ///< what else is worth knowing, e.g. a preconditioner that was given up
 };
 
 class Solver {
@@ -60,17 +64,22 @@ class Solver {
   /// projected.
   SolveReport solve(std::span<const double> b, std::span<double> x);
 
+  /// What a solver remembers from one solve to the next; a restarted run continues with it.
+  virtual void save(StateWriter&) const {}
+  /// `system`: of the kind that will be bound.
+  virtual void load(const StateReader&, const System& /*system*/) {}
+
   Solver(const Solver&) = delete;
   Solver& operator=(const Solver&) = delete;
-
- protected:
-  explicit Solver(SolverOptions options) : options_(std::move(options)) {}
 
   struct Attempt {
     bool ok = false;
     std::int64_t iterations = 0;
     std::string failure;  ///< empty with ok = false: the iterations ran out
   };
+
+ protected:
+  explicit Solver(SolverOptions options) : options_(std::move(options)) {}
 
   /// Backend set-up for *system_; throws SolverError when A cannot be set up (e.g. a singular
   /// block).
@@ -81,6 +90,7 @@ class Solver {
   /// is above the tolerance.
   virtual Attempt attempt(std::span<const double> b, std::span<double> x, double tolerance) = 0;
   virtual std::int64_t memory_bytes() const = 0;
+  virtual std::string note() const { return {}; }
 
   SolverOptions options_;
   const System* system_ = nullptr;
@@ -107,6 +117,8 @@ class Solver {
   std::vector<double> refined_;     // x + correction
 };
 
+/// Preconditioners of pcg, SolverOptions::preconditioner.
+std::vector<std::string> preconditioner_names();
 /// Names make_solver accepts, in table order. `available_solvers` leaves out what this build lacks.
 std::vector<std::string> solver_names();
 std::vector<std::string> available_solvers();

@@ -1,0 +1,30 @@
+#pragma once
+// The resistance operator seen from a grid: P^T R P with multilinear P, where an edge sees the gradient at its midpoint,
+//
+//   v_i - v_j  ->  sum over the corners n of the midpoint's cell  (d . grad N_n) v_n,   d = r_i - r_j
+//
+// which is exact for velocities linear in space and keeps the stencil at 3^D points. Friction with particles of known
+// velocity and the shift act at the particle's own position.
+#include "odpd/solvers/multigrid.h"
+
+namespace odpd {
+
+/// Where a position of the box lies in a grid: the cell's lowest corner and the position in the cell, 0 to 1.
+template <int D>
+struct GridPosition {
+  typename GridShape<D>::Index cell;
+  std::array<float, static_cast<std::size_t>(D)> in_cell;
+};
+
+template <int D>
+GridPosition<D> locate(const GridShape<D>& shape, const double* position);
+
+/// Length over which friction acts, sqrt(sum zeta r^2 / sum zeta) over the edges of a sample of the
+/// particles; 0 without any.
+template <int D>
+double friction_range(const Resistance<D>& resistance);
+
+template <int D>
+GridOperator<D> galerkin(const Resistance<D>& resistance, const GridShape<D>& shape);
+
+}  // namespace odpd

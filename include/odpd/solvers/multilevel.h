@@ -1,0 +1,73 @@
+#pragma once
+// The multilevel preconditioner of conjugate gradients on the rows of R:
+//
+//   z = w (c - D^-1 A) D^-1 r + P V P^T r,   c = 2.15, w = 2
+//
+// D the block diagonal, P multilinear interpolation from a regular grid of about 1.7 cutoffs to the particles, V a
+// multigrid cycle for the Galerkin operator of the grid. The eigenvalues of D^-1 A are at most 2, since
+//
+//   2 D - A = sum_edges g g^T on v_i + v_j (and what holds a node) >= 0,
+//
+// so the local part, a second step of block-Jacobi, is definite for c > 2. It serves clusters of strongly bound particles
+// that move together against weak ties: D alone takes them to be as stiff as the ties inside. The grid stands still while
+// the particles move, so its operator ages slowly: it is kept until convergence has slowed down (`note_rate`).
+#include <cstdint>
+#include <span>
+
+#include "odpd/core/archive.h"
+#include "odpd/solvers/multigrid.h"
+
+namespace odpd {
+
+/// Where a chunk of the places begins: a multiple of 1024, the block of sums.
+std::int64_t chunk_begin(std::int64_t places, std::int64_t chunk);
+
+template <int D>
+class Multilevel {
+ public:
+  /// Positions in the grid, and the grid's operator where it is missing, belongs to another shift or stiffness, or has
+  /// aged. Rebuilding costs about as much as one solve to 1e-7.
+  void set_up(const Resistance<D>& resistance, const SlicedRows<D>& rows);
+  /// Decades of residual per iteration of the last solve. Below `aged` times those of the first solve with the present
+  /// grid operator, the next set-up builds it anew.
+  void note_rate(double decades_per_iteration);
+  static constexpr double aged = 0.8;
+
+  /// c and w of the local part, which is the caller's.
+  static constexpr double local_bound = 2.15;
+  static constexpr double local_weight = 2.0;
+
+  // One application, piece by piece, so that the loops over the particles can be joined with others.
+  /// The pieces [0, chunks()) of the places may be restricted at the same time.
+  static constexpr std::int64_t chunks() { return 16; }
+  void clear_chunk(std::int64_t chunk);
+  /// P^T r of places [first, last) of a chunk.
+  void restrict_chunk(std::int64_t chunk, const float* r, std::int64_t first, std::int64_t last);
+  /// e = V P^T r; returns (P^T r) . e.
+  double cycle();
+  /// p = z + P e + beta p for places [first, last).
+  void interpolate(const float* z, float* p, float beta, std::int64_t first,
+                   std::int64_t last) const;
+
+  std::int64_t builds() const { return builds_; }
+  std::int64_t bytes() const;
+  void save(StateWriter& out) const;
+  void load(const StateReader& in);
+
+ private:
+  void build(const Resistance<D>& resistance);
+  void place_nodes(const Resistance<D>& resistance, const SlicedRows<D>& rows);
+
+  Multigrid<D> grid_;
+  double shift_ = 0.0, stiffness_time_ = 0.0;  // what the grid operator was built with
+  double fresh_rate_ = 0.0, last_rate_ = 0.0;
+  std::int64_t builds_ = 0;
+  std::int64_t places_ = 0;
+  FloatArray place_;                         // position in cell and cell, four floats per place
+  FloatArray restricted_;                    // per chunk a grid vector, point by point
+  FloatArray correction_;                    // e, point by point
+  std::vector<std::int64_t> touched_begin_;  // per chunk the grid floats that its places touch
+  std::vector<std::int64_t> touched_end_;
+};
+
+}  // namespace odpd

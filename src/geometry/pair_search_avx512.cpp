@@ -1,0 +1,2 @@
+#define ODPD_TABLE pair_search_avx512
+#include "pair_search_kernels.inc"

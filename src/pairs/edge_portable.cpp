@@ -1,0 +1,2 @@
+#define ODPD_TABLE edge_portable
+#include "edge_kernels.inc"

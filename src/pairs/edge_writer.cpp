@@ -1,0 +1,192 @@
+#include "odpd/pairs/edge_writer.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "edge_kernels.h"
+#include "odpd/core/isa.h"
+#include "odpd/core/parallel.h"
+
+namespace odpd {
+
+namespace {
+
+constexpr std::int64_t rows_per_block = 64;
+constexpr auto block = static_cast<std::size_t>(kernels::edge_block);
+
+// Differences of positions of some pairs, and their squares.
+template <int D>
+struct Differences {
+  double d[3][block], square[block];
+  double* const column[3] = {d[0], d[1], d[2]};
+  std::size_t size = 0;
+
+  void add(const Vec<D>& a, const Vec<D>& b) {
+    for (std::size_t c = 0; c < D; ++c) d[c][size] = a.x[c] - b.x[c];
+    ++size;
+  }
+  // Of the nearest images; the last vector is filled up with copies of the last pair.
+  void close(const kernels::EdgeKernels& kernel, const kernels::Images& images) {
+    for (std::size_t k = size; k % 8 != 0; ++k)
+      for (std::size_t c = 0; c < D; ++c) d[c][k] = d[c][size - 1];
+    kernel.separations(D, images, static_cast<int>(size), column, square);
+  }
+};
+
+template <int D>
+class Writer {
+ public:
+  using Fill = std::function<void(PairNetwork<D>&, std::size_t, std::size_t)>;
+
+  Writer(const PairList<D>& list, double cutoff, const Box<D>& box,
+         std::span<const Vec<D>> positions, const Particles<D>& particles, const Fill& fill,
+         PairNetwork<D>& network)
+      : kernel_(for_isa(kernels::edge_portable, kernels::edge_avx2, kernels::edge_avx512)),
+        list_(list),
+        reach2_(cutoff * cutoff),
+        positions_(positions),
+        particles_(particles),
+        fill_(fill),
+        network_(network) {
+    for (std::size_t c = 0; c < D; ++c) {
+      images_.length[c] = box.size.x[c];
+      images_.half[c] =
+          box.periodic[c] ? 0.5 * box.size.x[c] : std::numeric_limits<double>::infinity();
+    }
+    network_.particles = list.rows();
+    network_.first.resize(static_cast<std::size_t>(list.rows()) + 1);
+  }
+
+  void write() {
+    const bool known = std::any_of(particles_.group.begin(), particles_.group.end(),
+                                   [](std::int32_t group) { return group != 0; });
+    // A list without skin has the edges themselves, but for a pair at the cutoff, to rounding.
+    if (known || list_.skin() > 0.0 ||
+        !write_rows([&](std::int64_t p) { return list_.partners(p); })) {
+      find_contacts();
+      write_rows([&](std::int64_t p) {
+        return std::span<const std::int32_t>(network_.scratch)
+            .subspan(static_cast<std::size_t>(candidates_[static_cast<std::size_t>(p)]),
+                     static_cast<std::size_t>(contacts_[static_cast<std::size_t>(p)]));
+      });
+    }
+    network_.index_rows();
+  }
+
+ private:
+  // Partners closer than the cutoff, unless both are known, to `scratch` where the list's row begins in it.
+  void find_contacts() {
+    const auto n = static_cast<std::size_t>(list_.rows());
+    candidates_.assign(n + 1, 0);
+    contacts_.assign(n, 0);
+    for (std::size_t p = 0; p < n; ++p)
+      candidates_[p + 1] =
+          candidates_[p] +
+          static_cast<std::int64_t>(list_.partners(static_cast<std::int64_t>(p)).size());
+    if (network_.scratch.size() < static_cast<std::size_t>(candidates_.back()))
+      network_.scratch.resize(static_cast<std::size_t>(candidates_.back()));
+    parallel_ranges(list_.rows(), rows_per_block, [&](std::int64_t begin, std::int64_t end) {
+      Differences<D> pairs;
+      for (std::int64_t p = begin; p < end; ++p)
+        find_contacts_of(static_cast<std::size_t>(p), pairs);
+    });
+  }
+
+  void find_contacts_of(std::size_t p, Differences<D>& pairs) {
+    const auto partners = list_.partners(static_cast<std::int64_t>(p));
+    std::int32_t* out = network_.scratch.data() + candidates_[p];
+    for (std::size_t k = 0; k < partners.size(); k += block) {
+      const auto some = partners.subspan(k, std::min(block, partners.size() - k));
+      pairs.size = 0;
+      for (const std::int32_t q : some)
+        pairs.add(positions_[p], positions_[static_cast<std::size_t>(q)]);
+      pairs.close(kernel_, images_);
+      for (std::size_t l = 0; l < some.size(); ++l) {
+        const bool wanted =
+            particles_.is_free(p) || particles_.is_free(static_cast<std::size_t>(some[l]));
+        *out = some[l];  // never beyond the row: as many were read
+        if (wanted && pairs.square[l] < reach2_) ++out;
+      }
+    }
+    contacts_[p] = static_cast<std::int32_t>(out - (network_.scratch.data() + candidates_[p]));
+  }
+
+  // Writes all edges, given the partners of each particle. False when some are not closer than the cutoff.
+  template <class Partners>
+  bool write_rows(const Partners& partners) {
+    const auto n = static_cast<std::size_t>(list_.rows());
+    network_.first[0] = 0;
+    for (std::size_t p = 0; p < n; ++p)
+      network_.first[p + 1] =
+          network_.first[p] +
+          static_cast<std::int64_t>(partners(static_cast<std::int64_t>(p)).size());
+    network_.resize(network_.first[n]);
+    outside_.assign((n + rows_per_block - 1) / rows_per_block, 0);
+    parallel_ranges(list_.rows(), rows_per_block, [&](std::int64_t begin, std::int64_t end) {
+      Differences<D> pairs;
+      auto done = static_cast<std::size_t>(network_.first[static_cast<std::size_t>(begin)]);
+      int& outside = outside_[static_cast<std::size_t>(begin / rows_per_block)];
+      for (std::int64_t p = begin; p < end; ++p)
+        for (const std::int32_t q : partners(p)) {
+          const std::size_t k = done + pairs.size;
+          network_.i[k] = static_cast<std::int32_t>(p);
+          network_.j[k] = q;
+          pairs.add(positions_[static_cast<std::size_t>(p)],
+                    positions_[static_cast<std::size_t>(q)]);
+          if (pairs.size == block) outside += flush(pairs, done);
+        }
+      if (pairs.size > 0) outside += flush(pairs, done);
+    });
+    return std::all_of(outside_.begin(), outside_.end(), [](int count) { return count == 0; });
+  }
+
+  // Completes the edges from `done` on, and moves it.
+  int flush(Differences<D>& pairs, std::size_t& done) {
+    pairs.close(kernel_, images_);
+    int overlaps = 0;
+    const int outside =
+        kernel_.directions(D, static_cast<int>(pairs.size), pairs.column, pairs.square, reach2_,
+                           network_.e[done].x.data(), &network_.r[done], &overlaps);
+    const std::size_t end = done + pairs.size;
+    for (std::size_t k = done; overlaps > 0 && k < end; ++k)
+      if (network_.r[k] == 0.0)
+        network_.e[k] =
+            overlap_direction<D>(particles_.id[static_cast<std::size_t>(network_.i[k])],
+                                 particles_.id[static_cast<std::size_t>(network_.j[k])]);
+    fill_(network_, done, end);
+    done = end;
+    pairs.size = 0;
+    return outside;
+  }
+
+  const kernels::EdgeKernels& kernel_;
+  const PairList<D>& list_;
+  kernels::Images images_{};
+  double reach2_;
+  std::span<const Vec<D>> positions_;
+  const Particles<D>& particles_;
+  const Fill& fill_;
+  PairNetwork<D>& network_;
+  std::vector<std::int64_t> candidates_;  // where each row of the list begins
+  std::vector<std::int32_t> contacts_;    // pairs of each row that are edges
+  std::vector<int> outside_;
+};
+
+}  // namespace
+
+template <int D>
+void write_edge_geometry(const PairList<D>& list, double cutoff, const Box<D>& box,
+                         std::span<const Vec<D>> positions, const Particles<D>& particles,
+                         const std::function<void(PairNetwork<D>&, std::size_t, std::size_t)>& fill,
+                         PairNetwork<D>& network) {
+  Writer<D>(list, cutoff, box, positions, particles, fill, network).write();
+}
+
+template void write_edge_geometry<2>(
+    const PairList<2>&, double, const Box<2>&, std::span<const Vec<2>>, const Particles<2>&,
+    const std::function<void(PairNetwork<2>&, std::size_t, std::size_t)>&, PairNetwork<2>&);
+template void write_edge_geometry<3>(
+    const PairList<3>&, double, const Box<3>&, std::span<const Vec<3>>, const Particles<3>&,
+    const std::function<void(PairNetwork<3>&, std::size_t, std::size_t)>&, PairNetwork<3>&);
+
+}  // namespace odpd

@@ -1,0 +1,37 @@
+#pragma once
+// The two ways `pcg` works: in double on any System, and in single precision with refinement on the rows of R.
+#include <memory>
+#include <string>
+
+#include "odpd/core/archive.h"
+#include "odpd/solvers/solver.h"
+
+namespace odpd {
+
+class CgEngine {
+ public:
+  virtual ~CgEngine() = default;
+  virtual void set_up(const System& system) = 0;
+  /// As Solver::attempt, in at most `most_iterations` iterations.
+  virtual Solver::Attempt attempt(std::span<const double> b, std::span<double> x, double tolerance,
+                                  std::int64_t most_iterations) = 0;
+  virtual std::int64_t memory_bytes() const = 0;
+  /// What a report should say besides (a fallback); empty: nothing.
+  virtual std::string note() const { return {}; }
+  virtual void save(StateWriter&) const {}
+  virtual void load(const StateReader&) {}
+};
+
+/// Null unless the system is a Resistance.
+std::unique_ptr<CgEngine> make_mixed_cg(const System& system, const SolverOptions& options);
+
+/// Residuals of conjugate gradients rise and fall, but never by this much on a regular system.
+inline constexpr double divergence = 1e6;
+inline constexpr const char* diverged =
+    "the residual grows without bound: the matrix is singular and the forces are not balanced, as "
+    "for a group of "
+    "particles out of reach of all others; a weak pairwise friction of longer range "
+    "(fluid.rattler_friction) joins them";
+inline constexpr const char* no_longer_finite = "numbers are no longer finite";
+
+}  // namespace odpd

@@ -1,0 +1,200 @@
+#include "odpd/solvers/galerkin.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "multilevel_kernels.h"
+#include "odpd/core/parallel.h"
+
+namespace odpd {
+
+namespace {
+
+template <int D>
+using Triangle = std::array<float, static_cast<std::size_t>(GridShape<D>::triangle)>;
+
+template <int D>
+Vec<D> position_of(const Resistance<D>& resistance, std::size_t node) {
+  Vec<D> r;
+  for (std::size_t c = 0; c < D; ++c) r.x[c] = resistance.positions()[node * D + c];
+  return r;
+}
+
+template <int D>
+Triangle<D> triangle_of(const typename Resistance<D>::Block& block) {
+  Triangle<D> w;
+  std::size_t k = 0;
+  for (std::size_t row = 0; row < D; ++row)
+    for (std::size_t col = row; col < D; ++col) w[k++] = static_cast<float>(block[row * D + col]);
+  return w;
+}
+
+template <int D>
+Triangle<D> weight_of(const Resistance<D>& resistance, const typename Resistance<D>::Link& link) {
+  const Vec<D>& g = resistance.g(link);
+  typename Resistance<D>::Block z;
+  for (std::size_t row = 0; row < D; ++row)
+    for (std::size_t col = 0; col < D; ++col) z[row * D + col] = g.x[row] * g.x[col];
+  if (resistance.transverse()) {
+    for (double& entry : z) entry *= resistance.across(link).sign;
+    for (std::size_t c = 0; c < D; ++c) z[c * D + c] += resistance.across(link).zeta_perp;
+  }
+  return triangle_of<D>(z);
+}
+
+/// One matrix per cell over its corners, added up to the stencil in the end.
+template <int D>
+class Elements {
+ public:
+  Elements(const GridShape<D>& shape, const Resistance<D>& resistance)
+      : shape_(shape), resistance_(resistance) {
+    std::int64_t cells = 1;
+    for (int c = 0; c < 4; ++c) {
+      const auto i = static_cast<std::size_t>(c);
+      view_.cells[i] = c < D ? static_cast<float>(shape.cells[i]) : 1.0F;
+      view_.wrap[i] = c < D && shape.periodic[i] ? view_.cells[i] : 0.0F;
+      view_.stride[i] = c < D ? static_cast<std::int32_t>(cells) : 0;
+      if (c < D) cells *= shape.cells[i];
+    }
+    sums_.resize(cells * size);
+    sums_.fill(0.0F);
+    view_.elements = sums_.data();
+    place_nodes();
+  }
+  void add_node(std::int64_t n);
+  void add_to(GridOperator<D>& a) const;
+
+ private:
+  static constexpr int corners = GridShape<D>::corners;
+  static constexpr int triangle = GridShape<D>::triangle;
+  static constexpr int size = triangle * corners * corners;
+  static constexpr std::size_t most_links = 64;  // handed over at once
+
+  void place_nodes() {
+    positions_.resize(4 * resistance_.nodes());
+    parallel_for(resistance_.nodes(), [&](std::int64_t n) {
+      const Vec<D> r = position_of(resistance_, static_cast<std::size_t>(n)) - shape_.low;
+      for (int c = 0; c < 4; ++c)
+        positions_.data()[4 * n + c] =
+            c < D ? static_cast<float>(r[c < D ? c : 0] * shape_.per_length[c < D ? c : 0]) : 0.0F;
+    });
+    view_.position = positions_.data();
+  }
+
+  const GridShape<D>& shape_;
+  const Resistance<D>& resistance_;
+  ElementView view_{};
+  FloatArray positions_, sums_;
+};
+
+/// The edges of node n with higher ones, and what holds it.
+template <int D>
+void Elements<D>::add_node(std::int64_t n) {
+  const auto node = static_cast<std::size_t>(n);
+  std::array<std::int32_t, most_links> other;
+  std::array<float, 6 * most_links> weight;
+  std::size_t count = 0;
+  const auto hand_over = [&] {
+    multilevel_kernels().add_edges[D - 2](view_, n, static_cast<std::int64_t>(count), other.data(),
+                                          weight.data());
+    count = 0;
+  };
+  for (const auto& link : resistance_.links(node)) {
+    if (link.node < n) continue;
+    const Triangle<D> w = weight_of<D>(resistance_, link);
+    std::copy(w.begin(), w.end(), weight.begin() + static_cast<std::ptrdiff_t>(6 * count));
+    other[count++] = link.node;
+    if (count == most_links) hand_over();
+  }
+  if (count > 0) hand_over();
+  if (resistance_.anchors().empty()) return;
+  const Triangle<D> w = triangle_of<D>(resistance_.anchors()[node]);
+  multilevel_kernels().add_point[D - 2](view_, n, w.data());
+}
+
+template <int D>
+void Elements<D>::add_to(GridOperator<D>& a) const {
+  std::int64_t cell = 0;
+  // The cells in the order of their numbers: a periodic grid of as many points.
+  typename GridShape<D>::Index low{};
+  for (; cell * size < sums_.size(); ++cell) {
+    const float* const sum = sums_.data() + cell * size;
+    for (int n = 0; n < corners; ++n) {
+      auto point = low;
+      for (int c = 0; c < D; ++c) {
+        const auto i = static_cast<std::size_t>(c);
+        point[i] += (n >> c) % 2;
+        if (shape_.periodic[i]) point[i] %= shape_.points(c);
+      }
+      const std::int64_t place = shape_.place(point);
+      for (int m = 0; m < corners; ++m) {
+        int entry = 0, unit = 1;
+        for (int c = 0; c < D; ++c, unit *= 3) entry += unit * ((m >> c) % 2 - (n >> c) % 2 + 1);
+        float* const block = a.block(place, entry);
+        for (int k = 0; k < triangle; ++k) block[16 * k] += sum[(k * corners + n) * corners + m];
+      }
+    }
+    for (std::size_t c = 0; c < D; ++c) {
+      if (++low[c] < shape_.cells[c]) break;
+      low[c] = 0;
+    }
+  }
+}
+
+}  // namespace
+
+template <int D>
+GridPosition<D> locate(const GridShape<D>& shape, const double* position) {
+  GridPosition<D> at;
+  for (std::size_t c = 0; c < D; ++c) {
+    const std::int64_t cells = shape.cells[c];
+    const double x = (position[c] - shape.low.x[c]) * shape.per_length.x[c];
+    std::int64_t cell = static_cast<std::int64_t>(x) - (x < 0.0 ? 1 : 0);
+    const auto in_cell = static_cast<float>(x - static_cast<double>(cell));
+    if (shape.periodic[c]) {
+      if (cell < 0) cell += cells;
+      if (cell >= cells) cell -= cells;
+    }
+    // A particle outside a bounded direction (or not quite inside a periodic one) belongs to the border cell.
+    at.cell[c] = std::clamp<std::int64_t>(cell, 0, cells - 1);
+    at.in_cell[c] = cell < at.cell[c] ? 0.0F : cell > at.cell[c] ? 1.0F : std::min(in_cell, 1.0F);
+  }
+  return at;
+}
+
+template <int D>
+double friction_range(const Resistance<D>& resistance) {
+  double moment = 0.0, total = 0.0;
+  // A thousand particles tell it well enough.
+  const std::int64_t step = std::max<std::int64_t>(1, resistance.nodes() / 1024);
+  for (std::int64_t n = 0; n < resistance.nodes(); n += step) {
+    const auto node = static_cast<std::size_t>(n);
+    const Vec<D> own = position_of(resistance, node);
+    for (const auto& link : resistance.links(node)) {
+      const auto other = static_cast<std::size_t>(link.node);
+      const Vec<D> d = resistance.box().separation(own, position_of(resistance, other));
+      const double zeta = dot(resistance.g(link), resistance.g(link));
+      total += zeta;
+      moment += zeta * dot(d, d);
+    }
+  }
+  return total > 0.0 ? std::sqrt(moment / total) : 0.0;
+}
+
+template <int D>
+GridOperator<D> galerkin(const Resistance<D>& resistance, const GridShape<D>& shape) {
+  Elements<D> elements(shape, resistance);
+  for (std::int64_t n = 0; n < resistance.nodes(); ++n) elements.add_node(n);
+  GridOperator<D> a(shape);
+  elements.add_to(a);
+  return a;
+}
+
+template GridPosition<2> locate<2>(const GridShape<2>&, const double*);
+template GridPosition<3> locate<3>(const GridShape<3>&, const double*);
+template double friction_range<2>(const Resistance<2>&);
+template double friction_range<3>(const Resistance<3>&);
+template GridOperator<2> galerkin<2>(const Resistance<2>&, const GridShape<2>&);
+template GridOperator<3> galerkin<3>(const Resistance<3>&, const GridShape<3>&);
+
+}  // namespace odpd

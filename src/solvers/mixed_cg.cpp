@@ -1,0 +1,381 @@
+// Conjugate gradients on the packed rows of R (operator/sliced_rows.h) in single precision, for the correction d of
+//
+//   A d = r,   r = Pi (b - A x) in double,   x := x + d
+//
+// Where the recursive residual has fallen far below that of the last double one, x and r are brought up to date in double
+// and the iteration goes on with its search direction (reliable updates; Clark et al. 2010). On a held system Pi is
+// applied to p and A p.
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+
+#include "cg_engine.h"
+#include "multilevel_kernels.h"
+#include "odpd/core/error.h"
+#include "odpd/core/parallel.h"
+#include "odpd/solvers/backends.h"
+#include "odpd/solvers/multilevel.h"
+#include "odpd/solvers/preconditioner.h"
+
+namespace odpd {
+
+namespace {
+
+constexpr std::int64_t slice_places = 16;
+constexpr std::int64_t block_places = 1024;  // of sums, whatever the threads
+// A recursive residual this small beside the last double one is mostly rounding of the operator.
+constexpr double trusted_fall = 1e-4;
+// Aimed at, in units of the tolerance: the double residual may be a little larger than the recursive one.
+constexpr double aim = 0.8;
+// Iterations without halving the residual after which the grid is given up.
+constexpr std::int64_t patience = 200;
+// Fewer iterations say nothing of the rate.
+constexpr std::int64_t fewest_for_rate = 8;
+// `auto` (docs/performance.md has the measurements): the grid costs two to three times as much per iteration. Below so many
+// nodes, and where the shift exceeds this part of the mean friction of a node, block-Jacobi alone is as fast.
+template <int D>
+constexpr std::int64_t fewest_for_grid = D == 2 ? 500 : 5000;
+constexpr double shift_without_grid = 0.02;
+
+/// Inverse of a symmetric block; its first entry NaN when it is not positive definite to rounding.
+template <class Block>
+Block inverse_of(const Block& m) {
+  constexpr double singular = 1e-13;
+  Block out;
+  if constexpr (std::tuple_size_v<Block> == 4) {
+    const double det = m[0] * m[3] - m[1] * m[1];
+    const bool good = m[0] > 0.0 && m[3] > 0.0 && det > singular * m[0] * m[3];
+    const double scale = good ? 1.0 / det : std::nan("");
+    out = {scale * m[3], -scale * m[1], -scale * m[1], scale * m[0]};
+  } else {
+    const double c00 = m[4] * m[8] - m[5] * m[5], c01 = m[2] * m[5] - m[1] * m[8],
+                 c02 = m[1] * m[5] - m[2] * m[4], c11 = m[0] * m[8] - m[2] * m[2],
+                 c12 = m[1] * m[2] - m[0] * m[5], c22 = m[0] * m[4] - m[1] * m[1];
+    const double det = m[0] * c00 + m[1] * c01 + m[2] * c02;
+    const bool good = m[0] > 0.0 && c22 > singular * m[0] * m[4] && det > singular * c22 * m[8];
+    const double scale = good ? 1.0 / det : std::nan("");
+    out = {scale * c00, scale * c01, scale * c02, scale * c01, scale * c11,
+           scale * c12, scale * c02, scale * c12, scale * c22};
+  }
+  return out;
+}
+
+template <int D>
+class MixedCg : public CgEngine {
+ public:
+  explicit MixedCg(const SolverOptions& options) : preconditioner_(options.preconditioner) {}
+
+  void set_up(const System& system) override;
+  Solver::Attempt attempt(std::span<const double> b, std::span<double> x, double tolerance,
+                          std::int64_t most_iterations) override;
+  std::int64_t memory_bytes() const override;
+  std::string note() const override { return note_; }
+  void save(StateWriter& out) const override { grid_.save(out); }
+  void load(const StateReader& in) override { grid_.load(in); }
+
+ private:
+  static constexpr std::int64_t stride = SlicedRows<D>::stride;
+  static constexpr std::int64_t triangle = D * (D + 1) / 2;
+  enum class Outcome { reached, gave_up, out_of_iterations };
+
+  bool grid_pays() const;
+  void invert_diagonal();
+  double true_residual(std::span<const double> b, std::span<const double> x);
+  void load_residual(double scale);
+  void flush(std::span<double> x, double scale);
+  double product();
+  CgSums update(double alpha);
+  double precondition(double rz);
+  void turn(double beta);
+  void project(FloatArray& v);
+  Outcome iterate(std::span<const double> b, std::span<double> x, double goal,
+                  std::int64_t most_iterations, Solver::Attempt& result);
+  std::int64_t blocks() const { return (rows_.places() + block_places - 1) / block_places; }
+  std::int64_t end_of(std::int64_t block) const {
+    return std::min(rows_.places(), (block + 1) * block_places);
+  }
+
+  std::string preconditioner_;
+  const Resistance<D>* resistance_ = nullptr;
+  SlicedRows<D> rows_;
+  Multilevel<D> grid_;
+  bool with_grid_ = false;
+  std::string note_;
+  FloatArray inverse_;  // of the diagonal blocks: upper triangles, 16 places side by side
+  FloatArray r_, z_, p_, q_, x_;
+  std::vector<double> residual_;
+  std::vector<double> guess_;  // of the attempt at hand, for the fallback
+  std::vector<double> sums_;   // two per block
+};
+
+template <int D>
+void MixedCg<D>::set_up(const System& system) {
+  resistance_ = &dynamic_cast<const Resistance<D>&>(system);
+  rows_.pack(*resistance_);
+  note_.clear();
+  with_grid_ = preconditioner_ == "multilevel" || (preconditioner_ == "auto" && grid_pays());
+  for (FloatArray* v : {&r_, &z_, &p_, &q_, &x_}) v->resize(rows_.vector_size());
+  residual_.resize(index(system.size()));
+  sums_.resize(index(2 * blocks()));
+  invert_diagonal();
+  if (with_grid_) grid_.set_up(*resistance_, rows_);
+}
+
+template <int D>
+bool MixedCg<D>::grid_pays() const {
+  if (resistance_->nodes() < fewest_for_grid<D>) return false;
+  double trace = 0.0;  // of some nodes' blocks: their mean need not be exact
+  constexpr std::size_t sample = 1000;
+  const auto blocks = resistance_->diagonal();
+  std::size_t taken = 0;
+  for (std::size_t n = 0; n < blocks.size();
+       n += std::max<std::size_t>(1, blocks.size() / sample)) {
+    for (std::size_t c = 0; c < D; ++c) trace += blocks[n][c * D + c];
+    ++taken;
+  }
+  const double mean = trace / static_cast<double>(D * taken) - resistance_->shift();
+  return resistance_->shift() < shift_without_grid * mean;
+}
+
+template <int D>
+void MixedCg<D>::invert_diagonal() {
+  inverse_.resize(rows_.places() * triangle);
+  std::atomic<std::int64_t> first_bad{resistance_->nodes()};
+  parallel_for(rows_.places(), [&](std::int64_t place) {
+    const std::int32_t node = rows_.node_of_place()[index(place)];
+    float* out =
+        inverse_.data() + place / slice_places * slice_places * triangle + place % slice_places;
+    typename Resistance<D>::Block m{};
+    if (node >= 0) m = inverse_of(resistance_->diagonal()[index(node)]);
+    if (std::isnan(m[0])) lower(first_bad, node);
+    for (std::size_t row = 0; row < D; ++row)
+      for (std::size_t col = row; col < D; ++col, out += slice_places)
+        *out = static_cast<float>(m[row * D + col]);
+  });
+  if (first_bad < resistance_->nodes()) reject_block(first_bad);
+}
+
+/// residual_ := Pi (b - A x); returns its norm.
+template <int D>
+double MixedCg<D>::true_residual(std::span<const double> b, std::span<const double> x) {
+  if (std::all_of(x.begin(), x.end(), [](double v) { return v == 0.0; })) {
+    std::copy(b.begin(), b.end(), residual_.begin());
+  } else {
+    resistance_->apply(x, residual_);
+    parallel_for(resistance_->size(),
+                 [&](std::int64_t i) { residual_[index(i)] = b[index(i)] - residual_[index(i)]; });
+  }
+  if (resistance_->projected()) remove_mean(residual_, D);
+  return fixed_norm(residual_);
+}
+
+template <int D>
+void MixedCg<D>::load_residual(double scale) {
+  parallel_for(rows_.places(), [&](std::int64_t place) {
+    const std::int32_t node = rows_.node_of_place()[index(place)];
+    float* const r = r_.data() + place * stride;
+    for (std::int64_t c = 0; c < stride; ++c)
+      r[c] = node >= 0 && c < D ? static_cast<float>(residual_[index(node * D + c)] / scale) : 0.0F;
+  });
+}
+
+/// x += scale d, d = 0.
+template <int D>
+void MixedCg<D>::flush(std::span<double> x, double scale) {
+  parallel_for(rows_.places(), [&](std::int64_t place) {
+    const std::int32_t node = rows_.node_of_place()[index(place)];
+    float* const d = x_.data() + place * stride;
+    for (std::int64_t c = 0; c < stride; ++c) {
+      if (node >= 0 && c < D) x[index(node * D + c)] += scale * static_cast<double>(d[c]);
+      d[c] = 0.0F;
+    }
+  });
+}
+
+/// q = A p; returns p . q.
+template <int D>
+double MixedCg<D>::product() {
+  parallel_blocks(blocks(), [&](std::int64_t block) {
+    sums_[index(block)] = rows_.product(p_.data(), q_.data(), block * block_places, end_of(block));
+  });
+  double sum = 0.0;
+  for (std::int64_t block = 0; block < blocks(); ++block) sum += sums_[index(block)];
+  if (resistance_->holds_centre_of_mass()) project(q_);
+  return sum;
+}
+
+/// d += alpha p, r -= alpha q; z = D^-1 r and P^T r. Returns r . r and r . D^-1 r.
+template <int D>
+CgSums MixedCg<D>::update(double alpha) {
+  parallel_blocks(Multilevel<D>::chunks(), [&](std::int64_t chunk) {
+    if (with_grid_) grid_.clear_chunk(chunk);
+    const std::int64_t end = chunk_begin(rows_.places(), chunk + 1);
+    for (std::int64_t first = chunk_begin(rows_.places(), chunk); first < end;
+         first += block_places) {
+      const std::int64_t last = std::min(end, first + block_places);
+      const CgSums sums = multilevel_kernels().update[D - 2](
+          inverse_.data(), static_cast<float>(alpha), p_.data(), q_.data(), x_.data(), r_.data(),
+          z_.data(), first, last);
+      sums_[index(2 * (first / block_places))] = sums.rr;
+      sums_[index(2 * (first / block_places) + 1)] = sums.rz;
+      if (with_grid_) grid_.restrict_chunk(chunk, r_.data(), first, last);
+    }
+  });
+  CgSums total{0.0, 0.0};
+  for (std::int64_t block = 0; block < blocks(); ++block) {
+    total.rr += sums_[index(2 * block)];
+    total.rz += sums_[index(2 * block + 1)];
+  }
+  return total;
+}
+
+/// With z = D^-1 r and r . z given: the local part of the preconditioner in q, the grid's in its correction. Returns the
+/// product of r and both.
+template <int D>
+double MixedCg<D>::precondition(double rz) {
+  if (!with_grid_) return rz;
+  constexpr double step = Multilevel<D>::local_weight, keep = step * Multilevel<D>::local_bound;
+  parallel_blocks(blocks(), [&](std::int64_t block) {
+    const std::int64_t first = block * block_places, last = end_of(block);
+    sums_[index(block)] = rows_.product(z_.data(), q_.data(), first, last);
+    multilevel_kernels().local[D - 2](inverse_.data(), static_cast<float>(keep),
+                                      static_cast<float>(step), z_.data(), q_.data(), first, last);
+  });
+  double zaz = 0.0;
+  for (std::int64_t block = 0; block < blocks(); ++block) zaz += sums_[index(block)];
+  return keep * rz - step * zaz + grid_.cycle();
+}
+
+/// p = preconditioned r + beta p.
+template <int D>
+void MixedCg<D>::turn(double beta) {
+  const auto b = static_cast<float>(beta);
+  parallel_blocks(blocks(), [&](std::int64_t block) {
+    const std::int64_t first = block * block_places, last = end_of(block);
+    if (with_grid_) {
+      grid_.interpolate(q_.data(), p_.data(), b, first, last);
+    } else {
+      for (std::int64_t i = first * stride; i < last * stride; ++i)
+        p_.data()[i] = z_.data()[i] + b * p_.data()[i];
+    }
+  });
+  if (resistance_->holds_centre_of_mass()) project(p_);
+}
+
+/// v := Pi v over the occupied places.
+template <int D>
+void MixedCg<D>::project(FloatArray& v) {
+  std::array<double, D> mean{};
+  for (std::int64_t place = 0; place < rows_.places(); ++place)
+    if (rows_.node_of_place()[index(place)] >= 0)
+      for (std::int64_t c = 0; c < D; ++c)
+        mean[index(c)] += static_cast<double>(v.data()[place * stride + c]);
+  for (double& m : mean) m /= static_cast<double>(resistance_->nodes());
+  parallel_for(rows_.places(), [&](std::int64_t place) {
+    if (rows_.node_of_place()[index(place)] < 0) return;
+    for (std::int64_t c = 0; c < D; ++c)
+      v.data()[place * stride + c] -= static_cast<float>(mean[index(c)]);
+  });
+}
+
+template <int D>
+auto MixedCg<D>::iterate(std::span<const double> b, std::span<double> x, double goal,
+                         std::int64_t most_iterations, Solver::Attempt& result) -> Outcome {
+  double scale = true_residual(b, x);
+  if (scale <= goal) return Outcome::reached;
+  if (!std::isfinite(scale)) {
+    result.failure = no_longer_finite;
+    return Outcome::gave_up;
+  }
+  x_.fill(0.0F);
+  p_.fill(0.0F);
+  q_.fill(0.0F);
+  load_residual(scale);
+  CgSums sums = update(0.0);
+  double rho = precondition(sums.rz), beta = 0.0;
+  double updated = 1.0;  // residual at the last double one, in units of scale as all below
+  double smallest = 1.0;
+  std::int64_t since_smallest = 0;
+  while (result.iterations < most_iterations) {
+    ++result.iterations;
+    turn(beta);
+    const double curvature = product();
+    if (!(rho > 0.0) || !(curvature > 0.0)) {
+      flush(x, scale);
+      result.failure = std::isnan(rho) || std::isnan(curvature) ? no_longer_finite : not_definite;
+      return Outcome::gave_up;
+    }
+    sums = update(rho / curvature);
+    double norm = std::sqrt(sums.rr);
+    const bool reached = norm * scale <= aim * goal;
+    if (reached || norm < trusted_fall * updated) {
+      flush(x, scale);
+      if (reached && goal > trusted_fall * updated * scale) return Outcome::reached;
+      norm = true_residual(b, x) / scale;
+      if (norm * scale <= goal) return Outcome::reached;
+      updated = norm;
+      load_residual(scale);
+      sums = update(0.0);
+    }
+    if (norm > divergence) {
+      flush(x, scale);
+      result.failure = diverged;
+      return Outcome::gave_up;
+    }
+    since_smallest = norm < 0.5 * smallest ? 0 : since_smallest + 1;
+    smallest = std::min(smallest, since_smallest == 0 ? norm : smallest);
+    if (with_grid_ && since_smallest > patience) {
+      flush(x, scale);
+      result.failure = "the residual falls too slowly";
+      return Outcome::gave_up;
+    }
+    const double before = rho;
+    rho = precondition(sums.rz);
+    beta = rho / before;
+  }
+  flush(x, scale);
+  return Outcome::out_of_iterations;
+}
+
+template <int D>
+Solver::Attempt MixedCg<D>::attempt(std::span<const double> b, std::span<double> x,
+                                    double tolerance, std::int64_t most_iterations) {
+  Solver::Attempt result;
+  const double goal = tolerance * fixed_norm(b);
+  const double before = with_grid_ ? true_residual(b, x) : 0.0;
+  if (with_grid_) guess_.assign(x.begin(), x.end());
+  Outcome outcome = iterate(b, x, goal, most_iterations, result);
+  if (with_grid_ && outcome == Outcome::gave_up) {
+    note_ = "multilevel gave up (" + result.failure + "): block-Jacobi instead";
+    with_grid_ = false;
+    grid_.note_rate(0.0);  // to be built anew, if it ever served
+    result.failure.clear();
+    std::copy(guess_.begin(), guess_.end(), x.begin());
+    outcome = iterate(b, x, goal, most_iterations, result);
+  } else if (with_grid_ && outcome == Outcome::reached && result.iterations >= fewest_for_rate) {
+    grid_.note_rate(std::log10(before / goal) / static_cast<double>(result.iterations));
+  }
+  result.ok = outcome == Outcome::reached;
+  return result;
+}
+
+template <int D>
+std::int64_t MixedCg<D>::memory_bytes() const {
+  const std::int64_t floats = inverse_.size() + 5 * r_.size();
+  return rows_.bytes() + (with_grid_ ? grid_.bytes() : 0) +
+         floats * static_cast<std::int64_t>(sizeof(float)) +
+         static_cast<std::int64_t>(residual_.size() * sizeof(double));
+}
+
+}  // namespace
+
+std::unique_ptr<CgEngine> make_mixed_cg(const System& system, const SolverOptions& options) {
+  if (dynamic_cast<const Resistance<2>*>(&system) != nullptr)
+    return std::make_unique<MixedCg<2>>(options);
+  if (dynamic_cast<const Resistance<3>*>(&system) != nullptr)
+    return std::make_unique<MixedCg<3>>(options);
+  return nullptr;
+}
+
+}  // namespace odpd

@@ -1,0 +1,76 @@
+#pragma once
+// Kernels of the multilevel preconditioner and of single-precision conjugate gradients, one table per instruction path.
+#include <cstdint>
+
+namespace odpd {
+
+/// A 3^D block stencil on a padded grid (solvers/grid_shape.h). Vectors: one component after the other, `pitch` floats
+/// apart, pointers to the first grid point.
+struct StencilView {
+  const float*
+      blocks;  ///< per 16 points, stencil entry, upper triangle of the D x D block: 16 floats
+  const float* inverse;  ///< per 16 points, upper triangle of the inverted centre block: 16 floats
+  std::int64_t pitch;
+  std::int64_t offset[27];  ///< of each stencil entry
+};
+
+/// Where the nodes lie in the grid: per place four floats, the position in its cell (0 to 1 in each direction) and, as
+/// bits, the offset of the cell's lowest corner in a grid vector stored point by point (node_stride<D> floats each).
+struct TransferView {
+  const float* place;
+  std::int64_t corner[8];  ///< offsets of the cell's corners from the lowest one, x fastest
+};
+
+/// Matrices of the cells of a grid, and the nodes that are seen from it.
+struct ElementView {
+  const float* position;   ///< per node four floats, in units of the spacing from the first point
+  float cells[4];          ///< per direction; 1 in the unused ones
+  float wrap[4];           ///< the same in periodic directions, 0 in others
+  std::int32_t stride[4];  ///< of the cells' numbers; 0 in the unused ones
+  float* elements;
+};
+
+struct CgSums {
+  double rr, rz;
+};
+
+/// [D - 2] in each.
+struct MultilevelKernels {
+  // On the grid, for the groups of 16 points [first, last).
+  /// r = b - A x; ghosts of x filled.
+  void (*residual[2])(const StencilView&, const float* x, const float* b, float* r,
+                      std::int64_t first, std::int64_t last);
+  /// d = keep d + step D^-1 (b - A x), y = x + d.
+  void (*relax[2])(const StencilView&, const float* x, const float* b, float* d, float* y,
+                   float keep, float step, std::int64_t first, std::int64_t last);
+  /// d = step D^-1 b, x = d.
+  void (*relax_zero[2])(const StencilView&, const float* b, float* d, float* x, float step,
+                        std::int64_t first, std::int64_t last);
+  /// grid += P^T r over the places [first, last).
+  void (*restrict_to[2])(const TransferView&, const float* r, float* grid, std::int64_t first,
+                         std::int64_t last);
+  /// p = z + P grid + beta p.
+  void (*interpolate[2])(const TransferView&, const float* grid, const float* z, float* p,
+                         float beta, std::int64_t first, std::int64_t last);
+  /// x += alpha p, r -= alpha q, z = D^-1 r; D^-1 as upper triangles, 16 floats each.
+  CgSums (*update[2])(const float* inverse, float alpha, const float* p, const float* q, float* x,
+                      float* r, float* z, std::int64_t first, std::int64_t last);
+  /// w = keep y - step D^-1 w.
+  void (*local[2])(const float* inverse, float keep, float step, const float* y, float* w,
+                   std::int64_t first, std::int64_t last);
+  /// Adds t_n t_m W to the matrices of cells, [cell][triangle of W][corner n][corner m]. For the edges of a node: `other` its
+  /// neighbours, six floats of W each, t_n = d . grad N_n at the edge's midpoint. For the node itself: t_n = N_n.
+  void (*add_edges[2])(const ElementView&, std::int64_t node, std::int64_t count,
+                       const std::int32_t* other, const float* weight);
+  void (*add_point[2])(const ElementView&, std::int64_t node, const float* weight);
+  void (*dense)(const float* matrix, std::int64_t size, const float* x, float* y);
+};
+
+extern const MultilevelKernels multilevel_portable;
+extern const MultilevelKernels multilevel_avx2;
+extern const MultilevelKernels multilevel_avx512;
+
+/// The table of the process's path.
+const MultilevelKernels& multilevel_kernels();
+
+}  // namespace odpd

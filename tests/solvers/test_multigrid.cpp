@@ -1,0 +1,182 @@
+// The grid below the particles: its shape, its operator, and the cycle that inverts it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "odpd/solvers/galerkin.h"
+#include "solvers/resistance_toys.h"
+#include "support/dimensions.h"
+
+namespace {
+
+using odpd::GridOperator;
+using odpd::GridShape;
+
+template <class T>
+class Grid : public ::testing::Test {};
+TYPED_TEST_SUITE(Grid, support::Dimensions);
+
+template <int D>
+GridShape<D> grid_of(const toys::RandomFluid<D>& toy, double spacing) {
+  return odpd::choose_grid(toy.resistance.box(), toy.resistance.positions(), spacing);
+}
+
+TYPED_TEST(Grid, HasNearlyTheSpacingAskedForAndCanBeHalved) {
+  constexpr int D = TypeParam::D;
+  for (double length = 2.0; length < 200.0; length *= 1.07) {
+    odpd::Box<D> box;
+    box.size = support::uniform_vec<D>(length);
+    box.periodic.fill(true);
+    const GridShape<D> shape = odpd::choose_grid(box, {}, 1.7);
+    const double spacing = length / static_cast<double>(shape.cells[0]);
+    EXPECT_LT(spacing, 1.7 * 1.35) << length;
+    if (length > 4.0) {
+      EXPECT_GT(spacing, 1.7 / 1.35) << length;
+    }
+    GridShape<D> coarse = shape;
+    while (coarse.coarser().cells != coarse.cells) coarse = coarse.coarser();
+    EXPECT_LE(coarse.cells[0], 7) << "the dense solve must stay small; length " << length;
+  }
+}
+
+TYPED_TEST(Grid, NeighboursLieAtFixedOffsets) {
+  constexpr int D = TypeParam::D;
+  typename GridShape<D>::Index cells;
+  std::array<bool, D> periodic{};
+  for (std::size_t c = 0; c < D; ++c) cells[c] = 3 + static_cast<std::int64_t>(c);
+  periodic[0] = true;
+  const GridShape<D> shape({}, support::uniform_vec<D>(1.0), cells, periodic);
+  EXPECT_EQ(shape.points(0), 3);
+  EXPECT_EQ(shape.points(1), 5);
+  std::int64_t count = 0;
+  odpd::for_each_point(shape, [&](const auto& point) {
+    ++count;
+    auto right = point;
+    ++right[0];
+    const int entry = GridShape<D>::entries / 2 + 1;
+    EXPECT_EQ(shape.place(right), shape.place(point) + shape.entry_offset(entry));
+    EXPECT_GE(shape.place(point), 0);
+    EXPECT_LT(shape.place(point), shape.total());
+  });
+  EXPECT_EQ(count, shape.points());
+}
+
+// x^T A x of a velocity that is linear in space is the same on the grid and among the particles.
+TYPED_TEST(Grid, TheOperatorIsExactForLinearVelocities) {
+  constexpr int D = TypeParam::D;
+  for (const double gamma_perp : {0.0, 1.5}) {
+    const toys::RandomFluid<D> toy(400, toys::Ends::open, 0.7, gamma_perp);
+    const auto gradient = support::random_numbers(D * D, 5);
+    const auto velocity = [&](const odpd::Vec<D>& r) {
+      odpd::Vec<D> v = support::uniform_vec<D>(0.3);
+      for (std::size_t row = 0; row < D; ++row)
+        for (std::size_t col = 0; col < D; ++col) v.x[row] += gradient[row * D + col] * r.x[col];
+      return v;
+    };
+    std::vector<double> v, rv(static_cast<std::size_t>(toy.resistance.size()));
+    for (std::size_t n = 0; n < static_cast<std::size_t>(toy.resistance.nodes()); ++n) {
+      odpd::Vec<D> r;
+      for (std::size_t c = 0; c < D; ++c) r.x[c] = toy.resistance.positions()[n * D + c];
+      for (const double x : velocity(r).x) v.push_back(x);
+    }
+    toy.resistance.apply(v, rv);
+    // The finest grid and those below it.
+    GridOperator<D> a = odpd::galerkin(toy.resistance, grid_of(toy, 0.9));
+    for (int level = 0; level < 2; ++level) {
+      const GridShape<D>& shape = a.shape();
+      odpd::FloatArray x, b, r;
+      for (odpd::FloatArray* f : {&x, &b, &r}) {
+        f->resize(D * shape.pitch());
+        f->fill(0.0F);
+      }
+      odpd::for_each_point(shape, [&](const auto& point) {
+        odpd::Vec<D> at;
+        for (std::size_t c = 0; c < D; ++c)
+          at.x[c] = shape.low.x[c] + shape.length.x[c] * static_cast<double>(point[c]) /
+                                         static_cast<double>(shape.cells[c]);
+        const odpd::Vec<D> value = velocity(at);
+        for (int c = 0; c < D; ++c)
+          x.data()[shape.margin() + c * shape.pitch() + shape.place(point)] =
+              static_cast<float>(value[c]);
+      });
+      a.residual(b.data(), x.data(), r.data());
+      double energy = 0.0;
+      for (std::int64_t k = 0; k < x.size(); ++k)
+        energy -= static_cast<double>(x.data()[k]) * static_cast<double>(r.data()[k]);
+      EXPECT_NEAR(energy, support::dot(v, rv), 2e-5 * support::dot(v, rv)) << "level " << level;
+      a = a.coarsened();
+    }
+  }
+}
+
+template <int D>
+std::vector<float> cycled(odpd::Multigrid<D>& grid, const std::vector<float>& b) {
+  const GridShape<D>& shape = grid.finest().shape();
+  std::size_t k = 0;
+  odpd::for_each_point(shape, [&](const auto& point) {
+    for (int c = 0; c < D; ++c) grid.b()[c * shape.pitch() + shape.place(point)] = b[k++];
+  });
+  grid.cycle();
+  std::vector<float> x;
+  odpd::for_each_point(shape, [&](const auto& point) {
+    for (int c = 0; c < D; ++c) x.push_back(grid.x()[c * shape.pitch() + shape.place(point)]);
+  });
+  return x;
+}
+
+double inner(const std::vector<float>& a, const std::vector<float>& b) {
+  double s = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k)
+    s += static_cast<double>(a[k]) * static_cast<double>(b[k]);
+  return s;
+}
+
+std::vector<float> random_floats(std::size_t count, std::uint64_t seed, std::size_t components) {
+  std::vector<double> x = support::random_numbers(count, seed);
+  odpd::remove_mean(x, static_cast<int>(components));
+  return {x.begin(), x.end()};
+}
+
+// b . V b' = b' . V b, b . V b > 0, and one cycle leaves a small part of the error.
+TYPED_TEST(Grid, TheCycleIsASymmetricNearInverse) {
+  constexpr int D = TypeParam::D;
+  for (const toys::Ends ends : {toys::Ends::periodic, toys::Ends::walls}) {
+    const toys::RandomFluid<D> toy(D == 2 ? 4000 : 6000, ends);
+    odpd::Multigrid<D> grid;
+    grid.set_up(odpd::galerkin(toy.resistance, grid_of(toy, 1.5)),
+                toy.resistance.translations_are_null());
+    const auto size = static_cast<std::size_t>(grid.finest().shape().points() * D);
+    const std::vector<float> b1 = random_floats(size, 1, D), b2 = random_floats(size, 2, D);
+    const std::vector<float> x1 = cycled(grid, b1), x2 = cycled(grid, b2);
+    const double scale = std::sqrt(inner(b1, x1) * inner(b2, x2));
+    EXPECT_GT(inner(b1, x1), 0.0);
+    EXPECT_NEAR(inner(b1, x2), inner(b2, x1), 1e-4 * scale);
+    // b - A V b in the energy norm of V: the rate of V-cycles as an iteration of their own.
+    std::vector<float> r = b1;
+    const double before = inner(r, x1);
+    for (int k = 0; k < 3; ++k) {
+      const std::vector<float> x = cycled(grid, r);
+      const GridShape<D>& shape = grid.finest().shape();
+      odpd::FloatArray in, zero, out;
+      for (odpd::FloatArray* f : {&in, &zero, &out}) {
+        f->resize(D * shape.pitch());
+        f->fill(0.0F);
+      }
+      std::size_t i = 0;
+      odpd::for_each_point(shape, [&](const auto& point) {
+        for (int c = 0; c < D; ++c)
+          in.data()[shape.margin() + c * shape.pitch() + shape.place(point)] = x[i++];
+      });
+      grid.finest().residual(zero.data(), in.data(), out.data());
+      i = 0;
+      odpd::for_each_point(shape, [&](const auto& point) {
+        for (int c = 0; c < D; ++c)
+          r[i++] += out.data()[shape.margin() + c * shape.pitch() + shape.place(point)];
+      });
+    }
+    EXPECT_LT(inner(r, cycled(grid, r)), 0.05 * before)
+        << "three cycles leave less than a quarter of the error, in energy";
+  }
+}
+
+}  // namespace
