@@ -23,7 +23,7 @@ constexpr std::uint64_t seed = 1;
 template <int D>
 class Obstacle : public odpd::NoSurroundings<D> {
  public:
-  Vec<D> known_velocity(std::int32_t, double) const override {
+  Vec<D> known_velocity(std::int32_t, const Vec<D>&, double) const override {
     Vec<D> v;
     v[0] = 1.0;
     return v;

@@ -76,9 +76,9 @@ void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       stage.position[i] = positions[i];
       stage.potential_force[i] = stage.driving_force[i] = Vec<D>{};
-      stage.velocity[i] = particles_.is_free(i)
-                              ? Vec<D>{}
-                              : surroundings_.known_velocity(particles_.group[i], time);
+      stage.velocity[i] = particles_.is_free(i) ? Vec<D>{}
+                                                : surroundings_.known_velocity(particles_.group[i],
+                                                                               positions[i], time);
       if (!finite(positions[i])) lost[static_cast<std::size_t>(begin / range)] = 1;
     }
   });
@@ -96,7 +96,7 @@ void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage
   model_.write_edges(list_, box_, stage.position, particles_, stage.network);
   if (model_.conservative()) add_conservative_forces(stage.network, stage.potential_force);
   surroundings_.add_potential_forces(particles_, stage.position, stage.potential_force);
-  surroundings_.add_driving_forces(particles_, time, stage.driving_force);
+  surroundings_.add_driving_forces(particles_, stage.position, time, stage.driving_force);
 }
 
 template <int D>

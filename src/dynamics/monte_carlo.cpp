@@ -23,11 +23,11 @@ void MonteCarlo<D>::refuse_driving(Dynamics<D>& dynamics, double time) {
                       ", or use integrator.name = \"trapezoidal\"");
   };
   for (std::size_t i = 0; i < particles.position.size(); ++i)
-    if (!particles.is_free(i) &&
-        dynamics.surroundings().known_velocity(particles.group[i], time) != Vec<D>{})
+    if (!particles.is_free(i) && dynamics.surroundings().known_velocity(
+                                     particles.group[i], particles.position[i], time) != Vec<D>{})
       refuse("a moving wall has none: set wall.velocity to zero");
   force_.assign(particles.position.size(), Vec<D>{});
-  dynamics.surroundings().add_driving_forces(particles, time, force_);
+  dynamics.surroundings().add_driving_forces(particles, particles.position, time, force_);
   for (int c = 0; c < D; ++c)
     if (dynamics.box().is_periodic(c))
       for (const Vec<D>& f : force_)

@@ -69,7 +69,7 @@ double Scene<D>::potential_energy(const Particles<D>& particles, std::span<const
 }
 
 template <int D>
-void Scene<D>::add_driving_forces(const Particles<D>& particles, double,
+void Scene<D>::add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>>, double,
                                   std::vector<Vec<D>>& force) const {
   if (dot(settings_.body_force, settings_.body_force) == 0.0) return;
   for (std::size_t i = 0; i < force.size(); ++i)
@@ -77,7 +77,7 @@ void Scene<D>::add_driving_forces(const Particles<D>& particles, double,
 }
 
 template <int D>
-Vec<D> Scene<D>::known_velocity(std::int32_t group, double) const {
+Vec<D> Scene<D>::known_velocity(std::int32_t group, const Vec<D>&, double) const {
   return settings_.walls[static_cast<std::size_t>(group - 1)].velocity;
 }
 

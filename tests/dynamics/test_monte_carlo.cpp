@@ -30,12 +30,14 @@ class Trap : public NoSurroundings<D> {
     const double h = r[D - 1] - centre;
     return 0.5 * stiffness * h * h;
   }
-  void add_driving_forces(const Particles<D>& particles, double,
+  void add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>>, double,
                           std::vector<Vec<D>>& out) const override {
     for (std::size_t i = 0; i < out.size(); ++i)
       if (particles.is_free(i)) out[i] += force;
   }
-  Vec<D> known_velocity(std::int32_t, double) const override { return wall_velocity; }
+  Vec<D> known_velocity(std::int32_t, const Vec<D>&, double) const override {
+    return wall_velocity;
+  }
 };
 
 // `count` particles at random places of a box with edges `edge`, bounded along the last direction.

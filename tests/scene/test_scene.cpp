@@ -112,7 +112,7 @@ TYPED_TEST(SceneTest, TheBodyForceActsOnTheFluidOnly) {
   constexpr int D = TypeParam::D;
   const Scene<D> scene(duct<D>());
   std::vector<Vec<D>> force(scene.particles().position.size());
-  scene.add_driving_forces(scene.particles(), 0.0, force);
+  scene.add_driving_forces(scene.particles(), scene.particles().position, 0.0, force);
   for (std::size_t i = 0; i < force.size(); ++i) {
     EXPECT_EQ(force[i][0], scene.particles().is_free(i) ? 0.25 : 0.0);
     EXPECT_EQ(force[i][1], 0.0);

@@ -36,9 +36,9 @@ class Scene : public Surroundings<D> {
   double potential_energy_at(const Vec<D>& r) const override;
   double potential_energy(const Particles<D>& particles, std::span<const Vec<D>> positions,
                           std::vector<double>& laplacian) const override;
-  void add_driving_forces(const Particles<D>& particles, double t,
-                          std::vector<Vec<D>>& force) const override;
-  Vec<D> known_velocity(std::int32_t group, double t) const override;
+  void add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
+                          double t, std::vector<Vec<D>>& force) const override;
+  Vec<D> known_velocity(std::int32_t group, const Vec<D>& r, double t) const override;
   bool confine(Vec<D>& r) const override;
 
  private:
