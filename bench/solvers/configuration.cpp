@@ -23,7 +23,7 @@ constexpr std::uint64_t seed = 1;
 template <int D>
 class Obstacle : public odpd::NoSurroundings<D> {
  public:
-  Vec<D> known_velocity(std::int32_t, const Vec<D>&, double) const override {
+  Vec<D> known_velocity(std::int32_t, double) const override {
     Vec<D> v;
     v[0] = 1.0;
     return v;
@@ -200,8 +200,8 @@ double Problem<D>::neighbours() {
   const odpd::DofMap<D>& dofs = dynamics->dofs();
   std::int64_t ends = 0;
   for (std::size_t k = 0; k < stage.network.i.size(); ++k) {
-    const bool free = dofs.node_of(static_cast<std::size_t>(stage.network.i[k])) >= 0 &&
-                      dofs.node_of(static_cast<std::size_t>(stage.network.j[k])) >= 0;
+    const bool free = dofs.site_of(static_cast<std::size_t>(stage.network.i[k])) >= 0 &&
+                      dofs.site_of(static_cast<std::size_t>(stage.network.j[k])) >= 0;
     ends += free ? 2 : 0;
   }
   return static_cast<double>(ends) / static_cast<double>(dofs.nodes());

@@ -30,7 +30,7 @@ void WallForce<D>::add_stage(const Particles<D>& particles, const Stage<D>& stag
   add_conservative_forces(stage.network, force);
   add_friction_forces<D>(stage.network, stage.velocity, force);
   for (std::size_t i = 0; i < force.size(); ++i) {
-    if (particles.is_free(i)) continue;
+    if (!particles.is_known(i) || particles.body_of(i) >= 0) continue;
     const auto wall = static_cast<std::size_t>(particles.group[i] - 1);
     for (int c = 0; c < D; ++c)
       newest_[wall * D + static_cast<std::size_t>(c)] += weight * force[i][c] / area(wall);

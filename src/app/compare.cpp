@@ -32,8 +32,8 @@ struct Row {
 // The frozen problem, with and without the centre of mass held, and the tightest answer to each.
 template <int D>
 struct FrozenProblem {
-  Resistance<D> as_posed;
-  Resistance<D> held;
+  RigidResistance<D> as_posed;
+  RigidResistance<D> held;
   std::vector<double> b;
   std::vector<double> exact_as_posed, exact_held;
 };
@@ -71,18 +71,22 @@ FrozenProblem<D> freeze(Simulation<D>& simulation, std::int64_t steps) {
   dynamics.evaluate(dynamics.particles().position, clock.time(), stage);
   const std::vector<double> xi = dynamics.draw_noise(stage, clock.step, clock.dt, edge_noise);
   const bool hold = simulation.settings().dynamics.hold_centre_of_mass;
-  FrozenProblem<D> problem{
-      Resistance<D>(dynamics.box(), hold), Resistance<D>(dynamics.box(), true), {}, {}, {}};
+  FrozenProblem<D> problem{RigidResistance<D>(dynamics.box(), hold),
+                           RigidResistance<D>(dynamics.box(), true),
+                           {},
+                           {},
+                           {}};
   // The first solve of a step with implicit friction.
   problem.b = dynamics.force(stage);
-  const std::vector<double> q = dynamics.end_velocity();
   const double inertia = dynamics.inertia(clock.dt);
-  for (std::size_t k = 0; k < problem.b.size(); ++k) problem.b[k] += xi[k] + inertia * q[k];
-  for (Resistance<D>* r : {&problem.as_posed, &problem.held})
-    r->rebuild(stage.network, dynamics.dofs(), dynamics.particles(), stage.position,
+  const std::vector<double> momentum =
+      dynamics.times_inertia(stage, dynamics.end_velocity(stage), inertia);
+  for (std::size_t k = 0; k < problem.b.size(); ++k) problem.b[k] += xi[k] + momentum[k];
+  for (RigidResistance<D>* r : {&problem.as_posed, &problem.held})
+    r->rebuild(stage.network, dynamics.dofs(), dynamics.particles(), stage.position, stage.arms,
                inertia + dynamics.settings().zeta_0);
-  problem.exact_as_posed = tightest(problem.as_posed, problem.b);
-  problem.exact_held = tightest(problem.held, problem.b);
+  problem.exact_as_posed = tightest(problem.as_posed.system(), problem.b);
+  problem.exact_held = tightest(problem.held.system(), problem.b);
   return problem;
 }
 
@@ -98,7 +102,7 @@ template <int D>
 Row measure(const FrozenProblem<D>& problem, SolverOptions options, double tolerance,
             bool increment_rule) {
   const bool scheme_2 = options.name == "picard-deflated";
-  const System& system = scheme_2 ? problem.held : problem.as_posed;
+  const System& system = scheme_2 ? problem.held.system() : problem.as_posed.system();
   const std::vector<double>& exact = scheme_2 ? problem.exact_held : problem.exact_as_posed;
   options.tolerance = tolerance;
   const bool picard = options.name == "picard" || scheme_2;

@@ -25,10 +25,10 @@ template <int D, class Add>
 std::vector<double> resisted(const Stage<D>& stage, const DofMap<D>& dofs,
                              const std::vector<double>& q, const Add& add) {
   std::vector<Vec<D>> velocity, force(stage.position.size());
-  dofs.scatter(q, std::vector<Vec<D>>(force.size()), velocity);
+  dofs.scatter(stage.arms, q, force, velocity);
   add(stage.network, velocity, force);
   std::vector<double> f;
-  dofs.gather(force, f);
+  dofs.gather(stage.arms, force, f);
   for (double& value : f) value = -value;
   return f;
 }
@@ -76,9 +76,9 @@ void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       stage.position[i] = positions[i];
       stage.potential_force[i] = stage.driving_force[i] = Vec<D>{};
-      stage.velocity[i] = particles_.is_free(i) ? Vec<D>{}
-                                                : surroundings_.known_velocity(particles_.group[i],
-                                                                               positions[i], time);
+      stage.velocity[i] = particles_.is_known(i) && particles_.body_of(i) < 0
+                              ? surroundings_.known_velocity(particles_.group[i], time)
+                              : Vec<D>{};
       if (!finite(positions[i])) lost[static_cast<std::size_t>(begin / range)] = 1;
     }
   });
@@ -88,6 +88,7 @@ void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage
         throw BlowUpError(fmt::format("the position of particle {} at t = {:.6g} is not finite",
                                       particles_.id[i], time),
                           particles_.id[i]);
+  if (!particles_.bodies.empty()) place_arms(time, stage);
   {
     const PhaseTimer timer(phases_, Phase::neighbours);
     list_.update(stage.position);
@@ -115,7 +116,7 @@ auto Dynamics<D>::draw_noise(const Stage<D>& stage, std::int64_t step, double dt
     add_drag_noise(particles_, settings_.seed, static_cast<std::uint64_t>(step),
                    std::sqrt(2.0 * settings_.kT * settings_.zeta_0 / dt), force);
   Unknowns xi;
-  dofs().gather(force, xi);
+  dofs().gather(stage.arms, force, xi);
   return xi;
 }
 
@@ -127,20 +128,27 @@ auto Dynamics<D>::force(const Stage<D>& stage) -> Unknowns {
     const auto i = static_cast<std::size_t>(particle);
     force[i] = stage.potential_force[i] + stage.driving_force[i];
   });
-  if (dofs().nodes() < dofs().particles()) {
+  if (dofs().sites() < dofs().particles()) {
     std::vector<std::int32_t> known;
     std::vector<Vec<D>> velocity = stage.velocity;
     for (std::size_t i = 0; i < velocity.size(); ++i) {
-      if (particles_.is_free(i)) {
-        velocity[i] = Vec<D>{};
-      } else {
+      if (particles_.is_known(i)) {
         known.push_back(static_cast<std::int32_t>(i));
+      } else {
+        velocity[i] = Vec<D>{};
       }
     }
     add_known_friction<D>(stage.network, known, velocity, force);
   }
   Unknowns f;
-  dofs().gather(force, f);
+  dofs().gather(stage.arms, force, f);
+  for (std::size_t b = 0; b < static_cast<std::size_t>(dofs().bodies()); ++b) {
+    const RigidLoad<D> load = surroundings_.body_load(b, stage.time);
+    for (std::size_t c = 0; c < D; ++c) {
+      f[b * D + c] += load.torque.x[c];
+      f[dofs().body_node(b) * D + c] += load.force.x[c];
+    }
+  }
   return f;
 }
 
@@ -160,19 +168,20 @@ template <int D>
 auto Dynamics<D>::total_force(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
   Unknowns f = force(stage);
   const Unknowns drag = friction(stage, q);
-  for (std::size_t k = 0; k < f.size(); ++k) f[k] -= drag[k] + settings_.zeta_0 * q[k];
+  const Unknowns background = times_inertia(stage, q, settings_.zeta_0);
+  for (std::size_t k = 0; k < f.size(); ++k) f[k] -= drag[k] + background[k];
   return f;
 }
 
 template <int D>
 const System& Dynamics<D>::assemble(const Stage<D>& stage, const StepWeights& weights) {
   const PhaseTimer timer(phases_, Phase::assembly);
-  resistance_.rebuild(stage.network, dofs(), particles_, stage.position,
+  resistance_.rebuild(stage.network, dofs(), particles_, stage.position, stage.arms,
                       weights.inertia + settings_.zeta_0, weights.stiffness_time);
   if (weights.stiffness_time > 0.0)
     statistics_.clamped += std::count_if(stage.network.k_c.begin(), stage.network.k_c.end(),
                                          [](double k) { return k < 0.0; });
-  return resistance_;
+  return resistance_.system();
 }
 
 /// Summed over all particles, A q = load says (inertia + zeta_0) sum q = sum load where all else is pairwise.
@@ -212,7 +221,7 @@ void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights
   note(stage.report);
   const double shift = weights.inertia + settings_.zeta_0;
   if (shift > 0.0 && !guess.empty() && dofs().nodes() == dofs().particles() &&
-      !system.holds_centre_of_mass())
+      particles_.bodies.empty() && !system.holds_centre_of_mass())
     balance_momentum(load, shift, guess);
   stage.velocity = velocities(stage, guess);
   for (std::size_t i = 0; i < stage.velocity.size(); ++i)
@@ -222,23 +231,42 @@ void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights
 }
 
 template <int D>
-auto Dynamics<D>::end_velocity() -> Unknowns {
+auto Dynamics<D>::end_velocity(const Stage<D>& stage) -> Unknowns {
   if (!has_mass()) return Unknowns(static_cast<std::size_t>(dofs().unknowns()), 0.0);
   Unknowns q;
-  dofs().gather(particles_.end_velocity, q);
+  dofs().gather(stage.arms, particles_.end_velocity, q);
+  dofs().divide_by_inertia(stage.arms, q);
   return q;
 }
 
 template <int D>
-void Dynamics<D>::set_end_velocity(const Unknowns& q) {
+void Dynamics<D>::set_end_velocity(const Stage<D>& stage, const Unknowns& q) {
   const std::vector<Vec<D>> known = particles_.end_velocity;
-  dofs().scatter(q, known, particles_.end_velocity);
+  if (dofs().bodies() == 0) return dofs().scatter({}, q, known, particles_.end_velocity);
+  // The angular momentum goes on, with the moments of inertia of where the bodies are now.
+  Unknowns now = times_inertia(stage, q, 1.0);
+  const std::vector<Vec<D>> arms = arms_at(particles_.position);
+  dofs().divide_by_inertia(arms, now);
+  dofs().scatter(arms, now, known, particles_.end_velocity);
+}
+
+template <int D>
+auto Dynamics<D>::times_inertia(const Stage<D>& stage, const Unknowns& q, double inertia)
+    -> Unknowns {
+  Unknowns l = q;
+  if (dofs().bodies() > 0) {
+    std::vector<Vec<D>> velocity;
+    dofs().scatter(stage.arms, q, std::vector<Vec<D>>(stage.position.size()), velocity);
+    dofs().gather(stage.arms, velocity, l);
+  }
+  for (double& value : l) value *= inertia;
+  return l;
 }
 
 template <int D>
 std::vector<Vec<D>> Dynamics<D>::velocities(const Stage<D>& stage, const Unknowns& q) {
   std::vector<Vec<D>> velocity;
-  dofs().scatter(q, stage.velocity, velocity);
+  dofs().scatter(stage.arms, q, stage.velocity, velocity);
   return velocity;
 }
 
@@ -268,7 +296,7 @@ void Dynamics<D>::check_paths(const std::vector<Vec<D>>& velocity, double dt) co
 
 template <int D>
 std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, double dt,
-                                           std::int64_t& crossings) const {
+                                           std::int64_t& crossings) {
   check_paths(velocity, dt);
   const auto n = static_cast<std::int64_t>(velocity.size());
   std::vector<Vec<D>> r = particles_.position;
@@ -282,12 +310,19 @@ std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, 
     }
   });
   for (const std::int64_t count : caught) crossings += count;
+  for (std::size_t b = 0; b < particles_.bodies.size(); ++b) {
+    RigidPose<D> pose = particles_.bodies[b].pose;
+    if (advance(b, velocity, dt, pose)) place(b, pose, r, nullptr);
+  }
   return r;
 }
 
 template <int D>
 std::int64_t Dynamics<D>::move(const std::vector<Vec<D>>& velocity, double dt) {
   check_paths(velocity, dt);
+  std::vector<std::size_t> moved;
+  for (std::size_t b = 0; b < particles_.bodies.size(); ++b)
+    if (advance(b, velocity, dt, particles_.bodies[b].pose)) moved.push_back(b);
   const auto n = static_cast<std::int64_t>(velocity.size());
   std::vector<std::int64_t> caught(ranges(n), 0);
   parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
@@ -299,6 +334,8 @@ std::int64_t Dynamics<D>::move(const std::vector<Vec<D>>& velocity, double dt) {
         ++caught[static_cast<std::size_t>(begin / range)];
     }
   });
+  for (const std::size_t b : moved)
+    place(b, particles_.bodies[b].pose, particles_.position, &particles_.image);
   return std::accumulate(caught.begin(), caught.end(), std::int64_t{0});
 }
 

@@ -8,11 +8,12 @@ const StepRecord<D>& Extrapolated<D>::step(Dynamics<D>& dynamics, const Clock& c
   this->begin(dynamics, clock);
   const double inertia = dynamics.inertia(clock.dt);
   const double stiffness_time = theta_ * clock.dt;
-  std::vector<double> q = dynamics.end_velocity();
+  std::vector<double> q = dynamics.end_velocity(record.start);
+  const std::vector<double> momentum = dynamics.times_inertia(record.start, q, inertia);
   const std::vector<double> force = dynamics.force(record.start);
   std::vector<double> load =
       dynamics.draw_noise(record.start, clock.step, clock.dt, record.edge_noise);
-  for (std::size_t k = 0; k < q.size(); ++k) load[k] += inertia * q[k] + force[k];
+  for (std::size_t k = 0; k < q.size(); ++k) load[k] += momentum[k] + force[k];
 
   if (!last_velocity_.empty()) {
     const std::vector<double> last = from_identity(dynamics, last_velocity_);

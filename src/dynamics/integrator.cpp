@@ -25,17 +25,18 @@ enum class Masses { any, zero, positive };
 struct Entry {
   const char* name;
   Masses masses;
+  bool bodies;  // moves rigid bodies of unknown motion
 };
 // Every integrator there is; `make_integrator` below makes them.
-constexpr std::array<Entry, 9> table{{{"trapezoidal", Masses::any},
-                                      {"midpoint", Masses::any},
-                                      {"extrapolated", Masses::any},
-                                      {"implicit", Masses::any},
-                                      {"euler", Masses::zero},
-                                      {"setd", Masses::positive},
-                                      {"velocity-verlet", Masses::positive},
-                                      {"shardlow", Masses::positive},
-                                      {"monte-carlo", Masses::any}}};
+constexpr std::array<Entry, 9> table{{{"trapezoidal", Masses::any, true},
+                                      {"midpoint", Masses::any, true},
+                                      {"extrapolated", Masses::any, true},
+                                      {"implicit", Masses::any, true},
+                                      {"euler", Masses::zero, true},
+                                      {"setd", Masses::positive, false},
+                                      {"velocity-verlet", Masses::positive, false},
+                                      {"shardlow", Masses::positive, false},
+                                      {"monte-carlo", Masses::any, true}}};
 
 }  // namespace
 
@@ -54,36 +55,53 @@ void Integrator<D>::finish(Dynamics<D>& dynamics, const Clock& clock, const Unkn
   record_.v_mid = dynamics.velocities(record_.start, q_mid);
   record_.alarm_crossings += dynamics.move(record_.v_mid, clock.dt);
   if (!dynamics.has_mass()) return;
-  Unknowns q = dynamics.end_velocity();
+  Unknowns q = dynamics.end_velocity(record_.start);
   for (std::size_t k = 0; k < q.size(); ++k) q[k] = 2.0 * q_mid[k] - q[k];
-  dynamics.set_end_velocity(q);
+  dynamics.set_end_velocity(record_.start, q);
 }
+
+namespace {
+
+// For each node where its values stand by identity: the particles', then w and V of the bodies.
+template <int D>
+std::vector<std::size_t> places(Dynamics<D>& dynamics) {
+  const DofMap<D>& dofs = dynamics.dofs();
+  std::vector<std::size_t> place(static_cast<std::size_t>(dofs.nodes()));
+  const auto free = dofs.free_particles();
+  for (std::size_t k = 0; k < free.size(); ++k)
+    place[dofs.free_node(k)] =
+        static_cast<std::size_t>(dynamics.particles().id[static_cast<std::size_t>(free[k])]);
+  auto next = static_cast<std::size_t>(dofs.particles());
+  for (std::size_t b = 0; b < static_cast<std::size_t>(dofs.bodies()); ++b) {
+    place[b] = next++;
+    place[dofs.body_node(b)] = next++;
+  }
+  return place;
+}
+
+}  // namespace
 
 template <int D>
 std::vector<double> by_identity(Dynamics<D>& dynamics, const std::vector<double>& q) {
-  const DofMap<D>& dofs = dynamics.dofs();
-  std::vector<double> values(static_cast<std::size_t>(dofs.particles()) * D, 0.0);
-  for (std::size_t n = 0; n < static_cast<std::size_t>(dofs.nodes()); ++n) {
-    const auto i = static_cast<std::size_t>(dofs.particle_of(n));
-    const auto id = static_cast<std::size_t>(dynamics.particles().id[i]);
-    for (std::size_t c = 0; c < D; ++c) values[id * D + c] = q[n * D + c];
-  }
+  const std::vector<std::size_t> place = places(dynamics);
+  const auto entries = dynamics.dofs().particles() + 2 * dynamics.dofs().bodies();
+  std::vector<double> values(static_cast<std::size_t>(entries) * D, 0.0);
+  for (std::size_t n = 0; n < place.size(); ++n)
+    for (std::size_t c = 0; c < D; ++c) values[place[n] * D + c] = q[n * D + c];
   return values;
 }
 
 template <int D>
 std::vector<double> from_identity(Dynamics<D>& dynamics, const std::vector<double>& values) {
-  const DofMap<D>& dofs = dynamics.dofs();
-  if (values.size() != static_cast<std::size_t>(dofs.particles()) * D)
+  const auto entries = dynamics.dofs().particles() + 2 * dynamics.dofs().bodies();
+  if (values.size() != static_cast<std::size_t>(entries) * D)
     throw IoError(
         "the checkpoint's integrator arrays do not fit the particles: it is damaged or of another "
         "case");
-  std::vector<double> q(static_cast<std::size_t>(dofs.unknowns()));
-  for (std::size_t n = 0; n < static_cast<std::size_t>(dofs.nodes()); ++n) {
-    const auto i = static_cast<std::size_t>(dofs.particle_of(n));
-    const auto id = static_cast<std::size_t>(dynamics.particles().id[i]);
-    for (std::size_t c = 0; c < D; ++c) q[n * D + c] = values[id * D + c];
-  }
+  const std::vector<std::size_t> place = places(dynamics);
+  std::vector<double> q(place.size() * D);
+  for (std::size_t n = 0; n < place.size(); ++n)
+    for (std::size_t c = 0; c < D; ++c) q[n * D + c] = values[place[n] * D + c];
   return q;
 }
 
@@ -128,6 +146,16 @@ std::string mass_objection(const std::string& name, double mass) {
     return fmt::format(
         "'{}' needs fluid.mass above 0: at mass 0 use trapezoidal, midpoint or extrapolated", name);
   return {};
+}
+
+std::string bodies_objection(const std::string& name) {
+  const auto entry =
+      std::find_if(table.begin(), table.end(), [&](const Entry& e) { return name == e.name; });
+  if (entry == table.end() || entry->bodies) return {};
+  return fmt::format(
+      "'{}' moves particles one by one, but the scene has bodies that move freely ([[body]]): use "
+      "trapezoidal, at any mass",
+      name);
 }
 
 template <int D>

@@ -59,7 +59,9 @@ double LocalEnergy<D>::at(std::size_t i, const Vec<D>& r) {
   const Site site{particles_.species[i]};
   for (const Partner& other : partners_of(r)) {
     const auto j = static_cast<std::size_t>(other.index);
-    if (j != i) energy += model_.pair(std::sqrt(other.r2), site, Site{particles_.species[j]}).u;
+    const bool inside = particles_.group[i] != 0 && particles_.group[i] == particles_.group[j];
+    if (j != i && !inside)
+      energy += model_.pair(std::sqrt(other.r2), site, Site{particles_.species[j]}).u;
   }
   return energy;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "odpd/core/error.h"
 #include "odpd/core/random.h"
@@ -23,9 +24,17 @@ void MonteCarlo<D>::refuse_driving(Dynamics<D>& dynamics, double time) {
                       ", or use integrator.name = \"trapezoidal\"");
   };
   for (std::size_t i = 0; i < particles.position.size(); ++i)
-    if (!particles.is_free(i) && dynamics.surroundings().known_velocity(
-                                     particles.group[i], particles.position[i], time) != Vec<D>{})
+    if (particles.is_known(i) && particles.body_of(i) < 0 &&
+        dynamics.surroundings().known_velocity(particles.group[i], time) != Vec<D>{})
       refuse("a moving wall has none: set wall.velocity to zero");
+  for (std::size_t b = 0; b < particles.bodies.size(); ++b) {
+    const RigidMotion<D> motion = dynamics.surroundings().known_motion(b, time);
+    if (particles.bodies[b].known && (motion.velocity != Vec<D>{} || motion.angular != Vec<D>{}))
+      refuse("a moving body has none: set its velocity and angular_velocity to zero");
+    const RigidLoad<D> load = dynamics.surroundings().body_load(b, time);
+    if (load.force != Vec<D>{} || load.torque != Vec<D>{})
+      refuse("a body that is pushed has none here: set its force and torque to zero");
+  }
   force_.assign(particles.position.size(), Vec<D>{});
   dynamics.surroundings().add_driving_forces(particles, particles.position, time, force_);
   for (int c = 0; c < D; ++c)
@@ -80,6 +89,48 @@ bool MonteCarlo<D>::try_move(Dynamics<D>& dynamics, std::size_t i, const std::ar
 }
 
 template <int D>
+bool MonteCarlo<D>::try_body(Dynamics<D>& dynamics, std::size_t body, const CounterRandom& random,
+                             std::int64_t step) {
+  const Box<D>& box = dynamics.box();
+  Particles<D>& particles = dynamics.particles();
+  const RigidBody<D>& b = particles.bodies[body];
+  const auto constituents = dynamics.dofs().constituents(body);
+  double radius = 0.0;
+  for (const Vec<D>& point : b.frame) radius = std::max(radius, norm(point));
+  const auto shift = random.uniforms(static_cast<std::uint64_t>(step), 1, body, 0);
+  const auto turn = random.uniforms(static_cast<std::uint64_t>(step), 2, body, 0);
+  RigidMotion<D> motion;
+  for (int c = 0; c < D; ++c)
+    motion.velocity[c] = step_ * (2.0 * shift[static_cast<std::size_t>(c)] - 1.0);
+  const double angle = std::min(step_ / radius, std::numbers::pi / 2.0);
+  for (int c = 0; c < rotation_components<D>; ++c)
+    motion.angular[c] = angle * (2.0 * turn[static_cast<std::size_t>(c)] - 1.0);
+  RigidPose<D> pose = b.pose;
+  pose.advance(motion, 1.0, box);
+  std::vector<Vec<D>> position(constituents.size());
+  std::vector<typename Particles<D>::Image> image(constituents.size());
+  double change = 0.0;
+  for (std::size_t k = 0; k < constituents.size(); ++k) {
+    const auto p = static_cast<std::size_t>(constituents[k]);
+    place_constituent(b, pose, k, box, position[k], image[k]);
+    for (int c = 0; c < D; ++c)
+      if (!box.is_periodic(c) && (position[k][c] < 0.0 || position[k][c] > box.size[c]))
+        return false;
+    change += energy_->at(p, position[k]) - energy_->at(p, particles.position[p]) -
+              dot(force_[p], box.separation(position[k], particles.position[p]));
+  }
+  if (!(change <= 0.0 || turn.back() < std::exp(-change / dynamics.settings().kT))) return false;
+  for (std::size_t k = 0; k < constituents.size(); ++k) {
+    const auto p = static_cast<std::size_t>(constituents[k]);
+    energy_->moved(p, position[k]);
+    particles.position[p] = position[k];
+    particles.image[p] = image[k];
+  }
+  particles.bodies[body].pose = pose;
+  return true;
+}
+
+template <int D>
 void MonteCarlo<D>::sweep(Dynamics<D>& dynamics, std::int64_t step) {
   const PhaseTimer timer(dynamics.phases(), Phase::sweep);
   const Particles<D>& particles = dynamics.particles();
@@ -92,6 +143,10 @@ void MonteCarlo<D>::sweep(Dynamics<D>& dynamics, std::int64_t step) {
                                    static_cast<std::uint64_t>(particles.id[i]), 0);
     ++trials_;
     if (try_move(dynamics, i, u)) ++accepted_;
+  }
+  for (std::size_t b = 0; b < static_cast<std::size_t>(dynamics.dofs().bodies()); ++b) {
+    ++trials_;
+    if (try_body(dynamics, b, random, step)) ++accepted_;
   }
 }
 

@@ -65,7 +65,7 @@ const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   auto& record = this->record_;
   this->begin(dynamics, clock);
   const double zeta_0 = dynamics.settings().zeta_0;
-  std::vector<double> v = dynamics.end_velocity();
+  std::vector<double> v = dynamics.end_velocity(record.start);
   const std::vector<double> xi =
       dynamics.draw_noise(record.start, clock.step, clock.dt, record.edge_noise);
   record.start.velocity = dynamics.velocities(record.start, v);
@@ -100,7 +100,7 @@ const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
     last_velocity_ = by_identity(dynamics, v_before);
     last_force_ = by_identity(dynamics, force);
   }
-  dynamics.set_end_velocity(v);
+  dynamics.set_end_velocity(record.start, v);
   return record;
 }
 

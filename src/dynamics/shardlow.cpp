@@ -127,7 +127,8 @@ template <int D>
 const StepRecord<D>& Shardlow<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   auto& record = this->record_;
   this->begin(dynamics, clock);
-  std::vector<Vec<D>> velocity = dynamics.velocities(record.start, dynamics.end_velocity());
+  std::vector<Vec<D>> velocity =
+      dynamics.velocities(record.start, dynamics.end_velocity(record.start));
   if (begun_) kick(dynamics, 0.5 * clock.dt, velocity);
   record.start.velocity = velocity;
   record.v_start = velocity;
@@ -141,8 +142,8 @@ const StepRecord<D>& Shardlow<D>::step(Dynamics<D>& dynamics, const Clock& clock
   record.alarm_crossings += dynamics.move(record.v_mid, clock.dt);
   begun_ = true;
   std::vector<double> q;
-  dynamics.dofs().gather(velocity, q);
-  dynamics.set_end_velocity(q);
+  dynamics.dofs().gather({}, velocity, q);
+  dynamics.set_end_velocity(record.start, q);
   return record;
 }
 

@@ -8,10 +8,11 @@ const StepRecord<D>& TwoStage<D>::step(Dynamics<D>& dynamics, const Clock& clock
   this->begin(dynamics, clock);
   record.start_weight = start_weight_;
   const StepWeights weights{dynamics.inertia(clock.dt), 0.0};
-  std::vector<double> q = dynamics.end_velocity();
+  std::vector<double> q = dynamics.end_velocity(record.start);
   std::vector<double> impulse =
       dynamics.draw_noise(record.start, clock.step, clock.dt, record.edge_noise);
-  for (std::size_t k = 0; k < q.size(); ++k) impulse[k] += weights.inertia * q[k];
+  const std::vector<double> momentum = dynamics.times_inertia(record.start, q, weights.inertia);
+  for (std::size_t k = 0; k < q.size(); ++k) impulse[k] += momentum[k];
 
   std::vector<double> load = dynamics.force(record.start);
   for (std::size_t k = 0; k < load.size(); ++k) load[k] += impulse[k];

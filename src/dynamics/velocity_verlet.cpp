@@ -8,7 +8,7 @@ const StepRecord<D>& VelocityVerlet<D>::step(Dynamics<D>& dynamics, const Clock&
   this->begin(dynamics, clock);
   const double half_kick = 0.5 * clock.dt / dynamics.settings().mass;
   // The end velocity of the particles is the predicted one.
-  std::vector<double> predicted = dynamics.end_velocity();
+  std::vector<double> predicted = dynamics.end_velocity(record.start);
   record.start.velocity = dynamics.velocities(record.start, predicted);
   std::vector<double> force =
       dynamics.draw_noise(record.start, clock.step, clock.dt, record.edge_noise);
@@ -29,7 +29,7 @@ const StepRecord<D>& VelocityVerlet<D>::step(Dynamics<D>& dynamics, const Clock&
   record.v_mid = dynamics.velocities(record.start, half_way);
   record.alarm_crossings += dynamics.move(record.v_mid, clock.dt);
   half_way_ = by_identity(dynamics, half_way);
-  dynamics.set_end_velocity(predicted);
+  dynamics.set_end_velocity(record.start, predicted);
   return record;
 }
 

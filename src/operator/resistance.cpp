@@ -53,7 +53,7 @@ template <int D>
 void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs,
                             const Particles<D>& particles, std::span<const Vec<D>> positions,
                             double shift, double stiffness_time) {
-  nodes_ = dofs.nodes();
+  nodes_ = dofs.sites();
   shift_ = shift;
   stiffness_time_ = stiffness_time;
   ++generation_;
@@ -61,7 +61,7 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
   weigh_edges(network);
   count_links(network, dofs);
   links_.resize(static_cast<std::size_t>(start_.back()));
-  const bool anchored = shift != 0.0 || dofs.nodes() < dofs.particles();
+  const bool anchored = shift != 0.0 || dofs.sites() < dofs.particles();
   anchor_.assign(anchored ? n_nodes : 0, Block{});
   diagonal_.resize(n_nodes);
   parent_.resize(n_nodes);
@@ -103,7 +103,7 @@ void Resistance<D>::weigh_edges(const PairNetwork<D>& network) {
 
 template <int D>
 void Resistance<D>::count_links(const PairNetwork<D>& network, const DofMap<D>& dofs) {
-  if (dofs.nodes() == dofs.particles()) {
+  if (dofs.sites() == dofs.particles()) {
     start_.assign(network.start.begin(), network.start.end());
     return;
   }
@@ -112,7 +112,7 @@ void Resistance<D>::count_links(const PairNetwork<D>& network, const DofMap<D>& 
     const auto n = static_cast<std::size_t>(node);
     const std::int32_t particle = dofs.particle_of(n);
     for (const std::int32_t edge : network.edges_of(particle))
-      if (dofs.node_of(other_end(network, edge, particle)) >= 0) ++start_[n + 1];
+      if (dofs.site_of(other_end(network, edge, particle)) >= 0) ++start_[n + 1];
   });
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
 }
@@ -125,7 +125,7 @@ void Resistance<D>::fill_row(std::size_t node, std::int32_t particle, const Pair
   auto parent = static_cast<std::int32_t>(node);
   for (const std::int32_t edge : network.edges_of(particle)) {
     const auto k = static_cast<std::size_t>(edge);
-    const std::int32_t partner = dofs.node_of(other_end(network, edge, particle));
+    const std::int32_t partner = dofs.site_of(other_end(network, edge, particle));
     Block& sum = partner >= 0 ? free : known;
     Vec<D> g = g_[k];
     if (!across_.empty()) {
@@ -161,8 +161,10 @@ void Resistance<D>::check_rattlers(const PairNetwork<D>& network, const DofMap<D
   constexpr double singular = 1e-12;
   std::atomic<std::int64_t> first{nodes_};
   parallel_for(nodes_, [&](std::int64_t node) {
-    if (relative_determinant<D>(diagonal_[static_cast<std::size_t>(node)].data()) > singular)
-      return;
+    const auto n = static_cast<std::size_t>(node);
+    if (relative_determinant<D>(diagonal_[n].data()) > singular) return;
+    if (!particles.is_free(static_cast<std::size_t>(dofs.particle_of(n))))
+      return;  // held by its body
     lower(first, node);
   });
   if (first < nodes_) {
@@ -200,15 +202,20 @@ void Resistance<D>::check_clusters(const DofMap<D>& dofs, const Particles<D>& pa
     }
     return n;
   };
-  const auto join = [&](std::size_t n) {
-    for (const Link& link : links(n)) {
-      if (!ties(link)) continue;
-      const std::int32_t a = root(static_cast<std::int32_t>(n)), b = root(link.node);
-      if (a == b) continue;
-      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-      --groups;
-    }
+  const auto unite = [&](std::int32_t m, std::int32_t n) {
+    const std::int32_t a = root(m), b = root(n);
+    if (a == b) return;
+    parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    --groups;
   };
+  const auto join = [&](std::size_t n) {
+    for (const Link& link : links(n))
+      if (ties(link)) unite(static_cast<std::int32_t>(n), link.node);
+  };
+  for (std::size_t b = 0; b < static_cast<std::size_t>(dofs.bodies()); ++b)
+    for (const std::int32_t particle : dofs.constituents(b))
+      unite(dofs.site_of(static_cast<std::size_t>(dofs.constituents(b)[0])),
+            dofs.site_of(static_cast<std::size_t>(particle)));
   for (const std::size_t n : roots) join(n);
   if (groups <= 1) return;  // held, or the null space
   for (std::size_t n = 0; n < n_nodes && groups > 1; ++n) join(n);

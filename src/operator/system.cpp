@@ -40,6 +40,11 @@ void validate(const BlockCsr& a) {
 
 }  // namespace
 
+void System::project(std::span<double> x) const {
+  if (projected())
+    remove_mean(x.last(static_cast<std::size_t>(translating_nodes() * block_size())), block_size());
+}
+
 void remove_mean(std::span<double> x, int block) {
   const std::size_t b = index(block);
   const std::int64_t nodes = static_cast<std::int64_t>(x.size() / b);

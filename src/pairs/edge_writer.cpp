@@ -74,7 +74,7 @@ class Writer {
   }
 
  private:
-  // Partners closer than the cutoff, unless both are known, to `scratch` where the list's row begins in it.
+  // Partners closer than the cutoff that may move relative to it, to `scratch` where the list's row begins in it.
   void find_contacts() {
     const auto n = static_cast<std::size_t>(list_.rows());
     candidates_.assign(n + 1, 0);
@@ -102,8 +102,10 @@ class Writer {
         pairs.add(positions_[p], positions_[static_cast<std::size_t>(q)]);
       pairs.close(kernel_, images_);
       for (std::size_t l = 0; l < some.size(); ++l) {
-        const bool wanted =
-            particles_.is_free(p) || particles_.is_free(static_cast<std::size_t>(some[l]));
+        // Not between two of known velocity, nor inside a body.
+        const std::int32_t a = particles_.group[p];
+        const std::int32_t b = particles_.group[static_cast<std::size_t>(some[l])];
+        const bool wanted = a > 0 ? b <= 0 : a == 0 || a != b;
         *out = some[l];  // never beyond the row: as many were read
         if (wanted && pairs.square[l] < reach2_) ++out;
       }

@@ -109,7 +109,7 @@ void add_drag_noise(const Particles<D>& particles, std::uint64_t seed, std::uint
   const CounterRandom random(seed, Stream::drag_noise);
   parallel_for(particles.size(), [&](std::int64_t particle) {
     const auto i = static_cast<std::size_t>(particle);
-    if (!particles.is_free(i)) return;
+    if (particles.is_known(i)) return;
     const auto n = random.normals(step, 0, static_cast<std::uint64_t>(particles.id[i]), 0);
     for (std::size_t c = 0; c < D; ++c) force[i].x[c] += amplitude * n[c];
   });

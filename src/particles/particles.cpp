@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "odpd/core/error.h"
+
 namespace odpd {
 
 template <int D>
@@ -37,6 +39,54 @@ void Particles<D>::add(const Vec<D>& r, std::int32_t species_index, std::int32_t
   id[n] = static_cast<std::int64_t>(n);
   species[n] = species_index;
   group[n] = group_index;
+}
+
+template <int D>
+void Particles<D>::add_body(RigidBody<D> body, const Box<D>& box, std::int32_t species_index) {
+  const auto k = static_cast<std::int32_t>(bodies.size());
+  body.members.clear();
+  for (std::size_t c = 0; c < body.frame.size(); ++c) {
+    body.members.push_back(size());
+    add({}, species_index, body.known ? walls + k + 1 : -(k + 1));
+    const auto at = position.size() - 1;
+    place_constituent(body, body.pose, c, box, position[at], image[at]);
+  }
+  bodies.push_back(std::move(body));
+}
+
+template <int D>
+void Particles<D>::save(StateWriter& out) const {
+  fields_.save(out);
+  std::vector<double> poses;
+  std::vector<std::int64_t> images;
+  for (const RigidBody<D>& body : bodies) {
+    poses.insert(poses.end(), body.pose.centre.x.begin(), body.pose.centre.x.end());
+    const auto q = body.pose.orientation.values();
+    poses.insert(poses.end(), q.begin(), q.end());
+    images.insert(images.end(), body.pose.image.begin(), body.pose.image.end());
+  }
+  if (bodies.empty()) return;
+  out.write("body_poses", poses);
+  out.write("body_images", images);
+}
+
+template <int D>
+void Particles<D>::load(const StateReader& in) {
+  fields_.load(in);
+  if (bodies.empty()) return;
+  const std::vector<double> poses = in.read_doubles("body_poses");
+  const std::vector<std::int64_t> images = in.read_integers("body_images");
+  constexpr std::size_t numbers = D + Rotation<D>::numbers;
+  if (poses.size() != numbers * bodies.size() || images.size() != D * bodies.size())
+    throw IoError("the checkpoint holds another number of bodies: it is of another case");
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    RigidPose<D>& pose = bodies[b].pose;
+    for (std::size_t c = 0; c < D; ++c) {
+      pose.centre.x[c] = poses[b * numbers + c];
+      pose.image[c] = static_cast<std::int32_t>(images[b * D + c]);
+    }
+    pose.orientation.set(&poses[b * numbers + D]);
+  }
 }
 
 template <int D>

@@ -55,16 +55,35 @@ std::vector<Vec<D>> lattice(const Vec<D>& low, const Vec<D>& high, std::int64_t 
   return chosen;
 }
 
+// Inside a body: nearer to its centre than its outermost constituent.
 template <int D>
-std::vector<Vec<D>> random_points(std::uint64_t seed, const Vec<D>& low, const Vec<D>& high,
-                                  std::int64_t count) {
+bool inside_a_body(const Box<D>& box, const Particles<D>& particles, const Vec<D>& r) {
+  return std::any_of(particles.bodies.begin(), particles.bodies.end(),
+                     [&](const RigidBody<D>& body) {
+                       const double distance = norm(box.separation(r, body.pose.centre));
+                       return std::any_of(body.frame.begin(), body.frame.end(),
+                                          [&](const Vec<D>& b) { return norm(b) > distance; });
+                     });
+}
+
+template <int D>
+std::vector<Vec<D>> random_points(std::uint64_t seed, const Box<D>& box, const Vec<D>& low,
+                                  const Vec<D>& high, std::int64_t count,
+                                  const Particles<D>& particles) {
+  constexpr std::uint64_t most_attempts = 1000;
   const CounterRandom random(seed, Stream::start_positions);
   std::vector<Vec<D>> points(static_cast<std::size_t>(count));
   for (std::int64_t k = 0; k < count; ++k) {
-    const auto u = random.uniforms(0, 0, static_cast<std::uint64_t>(k), 0);
-    for (int c = 0; c < D; ++c)
-      points[static_cast<std::size_t>(k)][c] =
-          low[c] + (high[c] - low[c]) * u[static_cast<std::size_t>(c)];
+    Vec<D>& point = points[static_cast<std::size_t>(k)];
+    for (std::uint64_t attempt = 0; attempt < most_attempts; ++attempt) {
+      const auto u = random.uniforms(0, attempt, static_cast<std::uint64_t>(k), 0);
+      for (int c = 0; c < D; ++c)
+        point[c] = low[c] + (high[c] - low[c]) * u[static_cast<std::size_t>(c)];
+      if (!inside_a_body(box, particles, point)) break;
+      if (attempt + 1 == most_attempts)
+        throw ConfigError(
+            "no room was found for the fluid: the bodies fill the space between the walls");
+    }
   }
   return points;
 }
@@ -164,8 +183,9 @@ void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<
     const std::int64_t count =
         settings.count > 0 ? settings.count : std::llround(settings.density * volume);
     if (count < 1) throw ConfigError("the fluid has no particles: raise fluid.density or the box");
-    points = settings.start == StartKind::lattice ? lattice(low, high, count)
-                                                  : random_points(settings.seed, low, high, count);
+    points = settings.start == StartKind::lattice
+                 ? lattice(low, high, count)
+                 : random_points(settings.seed, settings.box, low, high, count, particles);
   }
   if (species.empty())
     species =
@@ -214,17 +234,38 @@ void draw_velocities(std::uint64_t seed, double kT, double mass, bool conserved,
   if (mass == 0.0) return;
   particles.carry_inertia();
   const CounterRandom random(seed, Stream::start_velocities);
-  const double share = 1.0 / static_cast<double>(particles.free_count());
+  std::int64_t movers = 0;
+  for (std::size_t i = 0; i < particles.position.size(); ++i)
+    movers += particles.is_known(i) ? 0 : 1;
+  const double share = 1.0 / static_cast<double>(movers);
   Vec<D> mean{};
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
-    if (!particles.is_free(i)) continue;
+    if (particles.is_known(i)) continue;
     const auto w = random.normals(0, 0, static_cast<std::uint64_t>(particles.id[i]), 0);
     for (std::size_t c = 0; c < D; ++c)
       particles.end_velocity[i].x[c] = std::sqrt(kT / mass) * w[c];
     mean += share * particles.end_velocity[i];
   }
   for (std::size_t i = 0; i < particles.position.size() && conserved; ++i)
-    if (particles.is_free(i)) particles.end_velocity[i] -= mean;
+    if (!particles.is_known(i)) particles.end_velocity[i] -= mean;
+  // The rigid part of independent velocities has the right variance.
+  std::vector<Vec<D>> arms, velocities;
+  const std::vector<std::int32_t> index = particles.index_of_id();
+  const auto end_velocity = [&](std::int64_t id) -> Vec<D>& {
+    return particles.end_velocity[static_cast<std::size_t>(index[static_cast<std::size_t>(id)])];
+  };
+  for (const RigidBody<D>& body : particles.bodies) {
+    if (body.known) continue;
+    arms.clear();
+    velocities.clear();
+    for (std::size_t k = 0; k < body.members.size(); ++k) {
+      arms.push_back(body.pose.orientation.turn(body.frame[k]));
+      velocities.push_back(end_velocity(body.members[k]));
+    }
+    const RigidMotion<D> motion = rigid_motion<D>(arms, velocities);
+    for (std::size_t k = 0; k < body.members.size(); ++k)
+      end_velocity(body.members[k]) = motion.velocity + swing(motion.angular, arms[k]);
+  }
 }
 
 template void draw_velocities<2>(std::uint64_t, double, double, bool, Particles<2>&);

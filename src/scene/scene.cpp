@@ -12,8 +12,13 @@ Scene<D>::Scene(SceneSettings<D> settings)
       model_(std::make_unique<DpdModel<D>>(static_cast<int>(settings_.species.size()),
                                            settings_.pairs)) {
   place_walls(settings_, particles_);
+  particles_.walls = static_cast<std::int32_t>(settings_.walls.size());
+  body_kind_ = place_bodies(settings_.bodies, settings_.box, fluid_low(), fluid_high(),
+                            settings_.seed, particles_);
   place_fluid(settings_, fluid_low(), fluid_high(), particles_);
   relax(settings_.box, *model_, *this, settings_.relax_sweeps, particles_);
+  for (std::size_t b = 0; b < body_kind_.size() && conserves_momentum(); ++b)
+    counter_force_ -= 1.0 / static_cast<double>(particles_.free_count()) * body_load(b, 0.0).force;
   draw_velocities(settings_.seed, largest_kT(), settings_.mass, conserves_momentum(), particles_);
 }
 
@@ -36,7 +41,7 @@ void Scene<D>::add_potential_forces(const Particles<D>& particles,
                                     std::vector<Vec<D>>& force) const {
   for (const auto& wall : settings_.walls)
     for (std::size_t i = 0; i < positions.size(); ++i) {
-      const double h = particles.is_free(i) ? depth_behind(wall, positions[i]) : 0.0;
+      const double h = particles.is_known(i) ? 0.0 : depth_behind(wall, positions[i]);
       if (h > 0.0) force[i][wall.axis] += (wall.high ? -1.0 : 1.0) * wall.stiffness * h;
     }
 }
@@ -60,7 +65,7 @@ double Scene<D>::potential_energy(const Particles<D>& particles, std::span<const
   double energy = 0.0;
   for (const auto& wall : settings_.walls)
     for (std::size_t i = 0; i < positions.size(); ++i) {
-      const double u = particles.is_free(i) ? wall_energy(wall, positions[i]) : 0.0;
+      const double u = particles.is_known(i) ? 0.0 : wall_energy(wall, positions[i]);
       if (!(u > 0.0)) continue;
       energy += u;
       laplacian[i] += wall.stiffness;
@@ -71,14 +76,26 @@ double Scene<D>::potential_energy(const Particles<D>& particles, std::span<const
 template <int D>
 void Scene<D>::add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>>, double,
                                   std::vector<Vec<D>>& force) const {
-  if (dot(settings_.body_force, settings_.body_force) == 0.0) return;
-  for (std::size_t i = 0; i < force.size(); ++i)
-    if (particles.is_free(i)) force[i] += settings_.body_force;
+  if (settings_.body_force == Vec<D>{} && counter_force_ == Vec<D>{}) return;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    if (!particles.is_known(i)) force[i] += settings_.body_force;
+    if (particles.is_free(i)) force[i] += counter_force_;
+  }
 }
 
 template <int D>
-Vec<D> Scene<D>::known_velocity(std::int32_t group, const Vec<D>&, double) const {
+Vec<D> Scene<D>::known_velocity(std::int32_t group, double) const {
   return settings_.walls[static_cast<std::size_t>(group - 1)].velocity;
+}
+
+template <int D>
+RigidMotion<D> Scene<D>::known_motion(std::size_t body, double) const {
+  return body_settings(body).velocity;
+}
+
+template <int D>
+RigidLoad<D> Scene<D>::body_load(std::size_t body, double) const {
+  return body_settings(body).load;
 }
 
 template <int D>

@@ -174,11 +174,12 @@ void read_drag(const Config& fluid, SceneSettings<D>& scene) {
   if (scene.zeta_0 == 0.0) return;
   const bool forced = fluid.boolean("zeta_0_under_flow", false);
   if (scene.driven() && !forced)
-    fluid.fail("zeta_0",
-               "a uniform drag breaks momentum conservation and screens flow beyond "
-               "sqrt(eta/(n zeta_0)), so it is refused where a wall moves or a body force drives: "
-               "use fluid.rattler_friction against rattlers, or insist with "
-               "fluid.zeta_0_under_flow = true");
+    fluid.fail(
+        "zeta_0",
+        "a uniform drag breaks momentum conservation and screens flow beyond "
+        "sqrt(eta/(n zeta_0)), so it is refused where a wall or body moves or a force drives: "
+        "use fluid.rattler_friction against rattlers, or insist with "
+        "fluid.zeta_0_under_flow = true");
 }
 
 template <int D>
@@ -287,7 +288,18 @@ std::int32_t species_index(const std::vector<SpeciesSettings>& species, const Co
 template <int D>
 bool SceneSettings<D>::driven() const {
   const auto moves = [](const WallSettings<D>& w) { return dot(w.velocity, w.velocity) > 0.0; };
-  return dot(body_force, body_force) > 0.0 || std::any_of(walls.begin(), walls.end(), moves);
+  const auto driven = [](const BodySettings<D>& b) {
+    return b.velocity.velocity != Vec<D>{} || b.velocity.angular != Vec<D>{} ||
+           b.load.force != Vec<D>{} || b.load.torque != Vec<D>{};
+  };
+  return dot(body_force, body_force) > 0.0 || std::any_of(walls.begin(), walls.end(), moves) ||
+         std::any_of(bodies.begin(), bodies.end(), driven);
+}
+
+template <int D>
+bool SceneSettings<D>::held() const {
+  return !walls.empty() || std::any_of(bodies.begin(), bodies.end(),
+                                       [](const auto& b) { return b.motion != BodyMotion::free; });
 }
 
 template <int D>
@@ -328,14 +340,19 @@ SceneSettings<D> read_scene_settings(const Config& config) {
   scene.species = read_species(config);
   read_start(config, scene);
   read_walls(config, scene);
+  for (const Config& entry : config.tables("body")) {
+    scene.bodies.push_back(read_body<D>(entry, scene.box));
+    scene.bodies.back().species = species_index(scene.species, entry, "species",
+                                                entry.text("species", scene.species[0].name));
+  }
   read_fluid(config, scene);
   const Config body_force = config.table("body_force");
   scene.body_force = read_optional_vector<D>(body_force, "force");
-  if (scene.walls.empty() && dot(scene.body_force, scene.body_force) > 0.0)
+  if (!scene.held() && dot(scene.body_force, scene.body_force) > 0.0)
     body_force.fail(
         "force",
         "in a fully periodic box nothing balances a net force, so a massless fluid has no answer "
-        "and one with mass accelerates for ever: add walls, or remove the force");
+        "and one with mass accelerates for ever: add walls or fixed bodies, or remove the force");
   read_drag(config.table("fluid"), scene);
   return scene;
 }

@@ -147,7 +147,7 @@ Solver::Attempt Cholesky::attempt_free(std::span<const double> b, std::span<doub
   } else {
     result.ok = true;
   }
-  if (system_->translations_are_null()) remove_mean(x, system_->block_size());
+  if (system_->translations_are_null()) system_->project(x);
   return result;
 }
 

@@ -166,7 +166,7 @@ double MixedCg<D>::true_residual(std::span<const double> b, std::span<const doub
     parallel_for(resistance_->size(),
                  [&](std::int64_t i) { residual_[index(i)] = b[index(i)] - residual_[index(i)]; });
   }
-  if (resistance_->projected()) remove_mean(residual_, D);
+  resistance_->project(residual_);
   return fixed_norm(residual_);
 }
 

@@ -34,9 +34,6 @@ class DoubleCg : public CgEngine {
   void cycle(std::span<double> x, double goal, std::int64_t most_iterations,
              Solver::Attempt& result);
   double start(std::span<const double> b, std::span<const double> x);
-  void project(std::span<double> v) const {
-    if (system_->projected()) remove_mean(v, system_->block_size());
-  }
 
   const System* system_ = nullptr;
   BlockJacobi preconditioner_;
@@ -47,7 +44,7 @@ class DoubleCg : public CgEngine {
 double DoubleCg::start(std::span<const double> b, std::span<const double> x) {
   system_->apply(x, r_);
   parallel_for(system_->size(), [&](std::int64_t i) { r_[index(i)] = b[index(i)] - r_[index(i)]; });
-  project(r_);
+  system_->project(r_);
   return fixed_norm(r_);
 }
 
@@ -59,13 +56,13 @@ void DoubleCg::cycle(std::span<double> x, double goal, std::int64_t most_iterati
   while (result.iterations < most_iterations) {
     ++result.iterations;
     preconditioner_.apply(r_, z_);
-    project(z_);
+    system_->project(z_);
     const double rho = fixed_dot(r_, z_);
     const double beta = rho_before == 0.0 ? 0.0 : rho / rho_before;
     parallel_for(system_->size(),
                  [&](std::int64_t i) { p_[index(i)] = z_[index(i)] + beta * p_[index(i)]; });
     system_->apply(p_, q_);
-    project(q_);
+    system_->project(q_);
     const double curvature = fixed_dot(p_, q_);
     if (!(rho > 0.0) || !(curvature > 0.0)) {
       result.failure = std::isnan(rho) || std::isnan(curvature)

@@ -158,7 +158,12 @@ MatNullSpace translations(const System& system) {
     check(VecCreateSeq(PETSC_COMM_SELF, size, &mode));
     check(VecSetBlockSize(mode, block));
     check(VecSet(mode, 0.0));
-    check(VecStrideSet(mode, k, 1.0 / std::sqrt(static_cast<double>(system.nodes()))));
+    const double one = 1.0 / std::sqrt(static_cast<double>(system.translating_nodes()));
+    check(VecStrideSet(mode, k, one));
+    for (auto n = static_cast<PetscInt>(system.nodes() - system.translating_nodes()); n-- > 0;)
+      check(VecSetValue(mode, n * block + k, 0.0, INSERT_VALUES));
+    check(VecAssemblyBegin(mode));
+    check(VecAssemblyEnd(mode));
   }
   MatNullSpace space = nullptr;
   check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE, block, modes.data(), &space));

@@ -50,14 +50,14 @@ double Picard::update(std::span<double> x) {
   if (deflated_) {
     // x - E E^T x is x without its mean; residual_ is free to keep the old x for the increment.
     std::copy(x.begin(), x.end(), residual_.begin());
-    remove_mean(x, system_->block_size());
+    system_->project(x);
     parallel_for(size, [&](std::int64_t k) {
       const std::size_t i = static_cast<std::size_t>(k);
       x[i] += step_[i];
       step_[i] = x[i] - residual_[i];
     });
   } else {
-    if (system_->projected()) remove_mean(step_, system_->block_size());
+    system_->project(step_);
     parallel_for(size, [&](std::int64_t k) {
       const std::size_t i = static_cast<std::size_t>(k);
       x[i] += step_[i];
@@ -76,7 +76,7 @@ Solver::Attempt Picard::attempt(std::span<const double> b, std::span<double> x, 
       const std::size_t i = static_cast<std::size_t>(k);
       residual_[i] = b[i] - residual_[i];
     });
-    if (system_->projected()) remove_mean(residual_, system_->block_size());
+    system_->project(residual_);
     const double norm = fixed_norm(residual_);
     if (result.iterations == 0) first = norm;
     if (!(norm <= growth_limit * first)) {

@@ -64,7 +64,7 @@ SolveReport Solver::solve(std::span<const double> b, std::span<double> x) {
   report.setup_seconds = setup_seconds_;
   report.assembly_seconds = assembly_seconds_;
   load_.assign(b.begin(), b.end());
-  if (system_->projected()) remove_mean(load_, system_->block_size());
+  system_->project(load_);
   const double norm = fixed_norm(load_);
   if (!std::isfinite(norm)) {
     report.failure = name() +
@@ -88,7 +88,7 @@ SolveReport Solver::solve(std::span<const double> b, std::span<double> x) {
 
 void Solver::iterate(double norm, std::span<double> x, SolveReport& report) {
   if (!all_finite(x)) std::fill(x.begin(), x.end(), 0.0);  // a guess need not be good
-  if (system_->projected()) remove_mean(x, system_->block_size());
+  system_->project(x);
   iterations_left_ = options_.max_iterations;
   Attempt last = attempt(load_, x, options_.tolerance);
   report.iterations = last.iterations;
@@ -128,7 +128,7 @@ Solver::Attempt Solver::refine(double norm, std::span<double> x, Measured& measu
 
 /// Fills residual_ = Pi (b - A x), x projected first where the problem is.
 Solver::Measured Solver::measure(std::span<double> x, double norm) {
-  if (system_->projected()) remove_mean(x, system_->block_size());
+  system_->project(x);
   residual_.resize(x.size());
   system_->apply(x, residual_);
   Measured m;
@@ -137,7 +137,7 @@ Solver::Measured Solver::measure(std::span<double> x, double norm) {
     const std::size_t i = static_cast<std::size_t>(k);
     residual_[i] = load_[i] - residual_[i];
   });
-  if (system_->projected()) remove_mean(residual_, system_->block_size());
+  system_->project(residual_);
   m.residual = fixed_norm(residual_) / norm;
   return m;
 }

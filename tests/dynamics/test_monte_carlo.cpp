@@ -35,9 +35,7 @@ class Trap : public NoSurroundings<D> {
     for (std::size_t i = 0; i < out.size(); ++i)
       if (particles.is_free(i)) out[i] += force;
   }
-  Vec<D> known_velocity(std::int32_t, const Vec<D>&, double) const override {
-    return wall_velocity;
-  }
+  Vec<D> known_velocity(std::int32_t, double) const override { return wall_velocity; }
 };
 
 // `count` particles at random places of a box with edges `edge`, bounded along the last direction.

@@ -11,7 +11,7 @@ namespace odpd {
 
 class MovingRow : public NoSurroundings<2> {
  public:
-  Vec<2> known_velocity(std::int32_t, const Vec<2>&, double) const override { return {{0.5, 0.0}}; }
+  Vec<2> known_velocity(std::int32_t, double) const override { return {{0.5, 0.0}}; }
 };
 
 struct ToySettings {

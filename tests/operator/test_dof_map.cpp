@@ -28,7 +28,7 @@ TYPED_TEST(DofMapTest, NodesAreTheFreeParticlesInOrder) {
   EXPECT_EQ(dofs.particles(), 6);
   EXPECT_EQ(dofs.unknowns(), 3 * D);
   const std::vector<std::int32_t> node{0, -1, 1, -1, -1, 2};
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(dofs.node_of(i), node[i]);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(dofs.site_of(i), node[i]);
   const std::vector<std::int32_t> particle{0, 2, 5};
   for (std::size_t n = 0; n < 3; ++n) EXPECT_EQ(dofs.particle_of(n), particle[n]);
 }
@@ -41,7 +41,7 @@ TYPED_TEST(DofMapTest, GatherIsTheTransposeOfScatter) {
   const auto force = support::random_vectors<D>(6, 1);
   const auto known = support::random_vectors<D>(6, 2);
   std::vector<double> q;
-  dofs.gather(force, q);
+  dofs.gather({}, force, q);
   ASSERT_EQ(q.size(), 3u * D);
   for (std::size_t c = 0; c < D; ++c) {
     EXPECT_EQ(q[c], force[0].x[c]);
@@ -50,15 +50,15 @@ TYPED_TEST(DofMapTest, GatherIsTheTransposeOfScatter) {
   }
   const auto unknowns = support::random_numbers(3 * D, 3);
   std::vector<Vec<D>> velocity;
-  dofs.scatter(unknowns, known, velocity);
+  dofs.scatter({}, unknowns, known, velocity);
   ASSERT_EQ(velocity.size(), 6u);
   for (const std::size_t i : {1u, 3u, 4u}) EXPECT_EQ(velocity[i], known[i]);
   std::vector<double> back;
-  dofs.gather(velocity, back);
+  dofs.gather({}, velocity, back);
   EXPECT_EQ(back, unknowns);
   // f . P q = P^T f . q
   const std::vector<Vec<D>> rest(6);
-  dofs.scatter(unknowns, rest, velocity);
+  dofs.scatter({}, unknowns, rest, velocity);
   double left = 0.0, right = 0.0;
   for (std::size_t i = 0; i < 6; ++i) left += dot(force[i], velocity[i]);
   for (std::size_t k = 0; k < q.size(); ++k) right += q[k] * unknowns[k];

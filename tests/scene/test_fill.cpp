@@ -59,8 +59,8 @@ TEST(Fill, AChannelHasItsWallsAndItsFluid) {
   EXPECT_EQ(scene.fluid_volume(), 100.0);
   EXPECT_EQ(scene.fluid_low(), (Vec<2>{{0.0, 1.0}}));
   EXPECT_EQ(scene.fluid_high(), (Vec<2>{{10.0, 11.0}}));
-  EXPECT_EQ(scene.known_velocity(1, {}, 0.0)[0], 0.0);
-  EXPECT_EQ(scene.known_velocity(2, {}, 0.0)[0], 1.0);
+  EXPECT_EQ(scene.known_velocity(1, 0.0)[0], 0.0);
+  EXPECT_EQ(scene.known_velocity(2, 0.0)[0], 1.0);
   std::map<std::pair<std::int32_t, double>, std::vector<double>> layers;
   const auto& p = scene.particles();
   for (std::size_t i = 0; i < p.position.size(); ++i) {

@@ -28,7 +28,10 @@ enum class Stream : std::uint64_t {
   probe = 5,  ///< random vectors of tests and of `compare`: counter (k, 0, i, 0)
   start_velocities = 6,  ///< Maxwell velocities of particles with mass: counter (0, 0, id, 0)
   drag_noise = 7,        ///< noise of the uniform drag zeta_0: counter (step, 0, id, 0)
-  monte_carlo = 8,       ///< trial moves: counter (sweep, 0, id, 0): D displacements, acceptance
+  monte_carlo =
+      8,  ///< trial moves: counter (sweep, 0, id, 0): D displacements, acceptance; of bodies (sweep, 1, body, 0)
+          ///< and their turns (sweep, 2, body, 0)
+  body_poses = 9,  ///< places and orientations of bodies: counter (attempt, 0 or 1, body, 0)
 };
 
 /// Uniform and normal numbers of one seed and stream.

@@ -15,7 +15,7 @@
 #include "odpd/dynamics/step_record.h"
 #include "odpd/dynamics/surroundings.h"
 #include "odpd/geometry/pair_list.h"
-#include "odpd/operator/resistance.h"
+#include "odpd/operator/rigid_resistance.h"
 #include "odpd/pairs/pair_model.h"
 #include "odpd/solvers/solver.h"
 
@@ -99,21 +99,25 @@ class Dynamics {
   /// M = 2 m/dt.
   double inertia(double dt) const { return 2.0 * settings_.mass / dt; }
   bool has_mass() const { return settings_.mass > 0.0; }
-  /// P^T of the particles' end velocities (zeros without mass).
-  Unknowns end_velocity();
-  void set_end_velocity(const Unknowns& q);
+  /// The unknowns of the particles' end velocities (zeros without mass), at the stage of a step's start.
+  Unknowns end_velocity(const Stage<D>& stage);
+  /// The same from unknowns q at that stage, for the particles where they are now: bodies keep their angular momentum.
+  void set_end_velocity(const Stage<D>& stage, const Unknowns& q);
+  /// inertia P^T P q: momenta, with a mass, or a drag, of `inertia` on every particle that moves.
+  Unknowns times_inertia(const Stage<D>& stage, const Unknowns& q, double inertia);
   /// P q + the stage's known velocities.
   std::vector<Vec<D>> velocities(const Stage<D>& stage, const Unknowns& q);
 
   /// position + dt velocity, wrapped; a particle that moves further than half the box throws, as in `move`.
   /// Adds the mirror's catches to `crossings`.
   std::vector<Vec<D>> displaced(const std::vector<Vec<D>>& velocity, double dt,
-                                std::int64_t& crossings) const;
+                                std::int64_t& crossings);
   /// Moves the particles by dt velocity and remembers it; returns the mirror's catches. Throws SolverError when a
   /// particle moves further than half the box in one step.
   std::int64_t move(const std::vector<Vec<D>>& velocity, double dt);
 
-  const Resistance<D>& resistance() const { return resistance_; }
+  /// R on the sites: free particles and constituents.
+  const Resistance<D>& resistance() const { return resistance_.sites(); }
   const PairList<D>& pair_list() const { return list_; }
   const DofMap<D>& dofs();
   Solver& solver() { return *solver_; }
@@ -125,6 +129,13 @@ class Dynamics {
 
  private:
   void check_paths(const std::vector<Vec<D>>& velocity, double dt) const;
+  std::vector<Vec<D>> arms_at(std::span<const Vec<D>> positions);
+  void place_arms(double time, Stage<D>& stage);
+  /// Moves a pose of the body along velocities of its constituents; false when these are zero.
+  bool advance(std::size_t body, const std::vector<Vec<D>>& velocity, double dt,
+               RigidPose<D>& pose);
+  void place(std::size_t body, const RigidPose<D>& pose, std::vector<Vec<D>>& positions,
+             std::vector<typename Particles<D>::Image>* images);
   void balance_momentum(const Unknowns& load, double shift, Unknowns& q) const;
   void note(const SolveReport& report);
 
@@ -136,7 +147,7 @@ class Dynamics {
   DynamicsSettings settings_;
   PairList<D> list_;
   std::unique_ptr<DofMap<D>> dofs_;
-  Resistance<D> resistance_;
+  RigidResistance<D> resistance_;
   PhaseSeconds phases_;
   SolverStatistics statistics_;
 };

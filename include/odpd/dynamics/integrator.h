@@ -60,8 +60,8 @@ class Integrator {
   StepRecord<D> record_;
 };
 
-/// Unknowns in the order of the persistent identities, D numbers per particle (zero where the velocity is known), and
-/// back: carried arrays so survive a reordering of memory.
+/// Unknowns in the order of the persistent identities, D numbers per particle (zero where it has none of its own), then
+/// those of the bodies, and back: carried arrays so survive a reordering of memory.
 template <int D>
 std::vector<double> by_identity(Dynamics<D>& dynamics, const std::vector<double>& q);
 template <int D>
@@ -81,6 +81,8 @@ std::vector<std::string> integrator_names();
 IntegratorSettings read_integrator(const Config& config);
 /// Why this integrator cannot run particles of this mass, with the remedy; empty when it can.
 std::string mass_objection(const std::string& name, double mass);
+/// Why this integrator cannot move rigid bodies of unknown motion; empty when it can.
+std::string bodies_objection(const std::string& name);
 /// Throws ConfigError for an unknown name, listing the names.
 template <int D>
 std::unique_ptr<Integrator<D>> make_integrator(const IntegratorSettings& settings);

@@ -1,5 +1,5 @@
 #pragma once
-// Energy of one free particle among the others,
+// Energy of one particle among the others (of a constituent: among those outside its body),
 //
 //   U_i(r) = sum_{j != i, |r - r_j| < r_c} u(|r - r_j|) + V(r)
 //
@@ -23,7 +23,7 @@ class LocalEnergy {
 
   /// Sorts all particles into their cells; sums come out in an order fixed by positions and memory order from here on.
   void place();
-  /// U_i(r); r inside the box along periodic directions.
+  /// U_i(r) with all others where they were placed or last moved to; r inside the box along periodic directions.
   double at(std::size_t i, const Vec<D>& r);
   /// Particle i went from where it was placed or last moved to r.
   void moved(std::size_t i, const Vec<D>& r);

@@ -4,7 +4,8 @@
 //
 //   r' = r + step (2 u - 1),  u uniform in (0, 1)^D;   accepted with probability min(1, exp(-(U(r') - U(r))/kT))
 //
-// and rejected where r' leaves the box in a bounded direction. U: pair energies, wall potentials, and -f.r of a body
+// and then of every rigid body: its centre likewise, and its orientation by exp(step/radius (2 u - 1)) in the same trial;
+// // and rejected where r' leaves the box in a bounded direction. U: pair energies, wall potentials, and -f.r of a body
 // force f along bounded directions.
 //
 // Exact for any fixed step: each trial move obeys detailed balance, and their order does not depend on positions (in
@@ -15,6 +16,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "odpd/core/random.h"
 #include "odpd/dynamics/integrator.h"
 #include "odpd/dynamics/local_energy.h"
 
@@ -43,6 +45,8 @@ class MonteCarlo : public Integrator<D> {
  private:
   void refuse_driving(Dynamics<D>& dynamics, double time);
   bool try_move(Dynamics<D>& dynamics, std::size_t i, const std::array<double, 4>& u);
+  bool try_body(Dynamics<D>& dynamics, std::size_t body, const CounterRandom& random,
+                std::int64_t step);
   void sweep(Dynamics<D>& dynamics, std::int64_t step);
   void tune(const Box<D>& box);
 

@@ -12,8 +12,9 @@ namespace odpd {
 template <int D>
 struct Stage {
   double time = 0.0;
-  std::vector<Vec<D>> position;         ///< inside the box along periodic directions
-  PairNetwork<D> network;               ///< edges at `position`
+  std::vector<Vec<D>> position;  ///< inside the box along periodic directions
+  std::vector<Vec<D>> arms;  ///< of constituents of bodies, zero for others; empty without bodies
+  PairNetwork<D> network;    ///< edges at `position`
   std::vector<Vec<D>> potential_force;  ///< conservative pair forces and wall potentials
   std::vector<Vec<D>> driving_force;    ///< body force
   std::vector<Vec<D>> velocity;         ///< solved (free) or prescribed (known)

@@ -22,11 +22,15 @@ class Surroundings {
   /// Energy of the potentials, and their Laplacian added per particle (for the configurational temperature).
   virtual double potential_energy(const Particles<D>& particles, std::span<const Vec<D>> positions,
                                   std::vector<double>& laplacian) const = 0;
-  /// Adds driving forces (body force) on particles at these positions at time t.
+  /// Adds driving forces (body force) on the particles that move, at these positions at time t.
   virtual void add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
                                   double t, std::vector<Vec<D>>& force) const = 0;
-  /// Velocity at time t of a particle of `group` >= 1 at r.
-  virtual Vec<D> known_velocity(std::int32_t group, const Vec<D>& r, double t) const = 0;
+  /// Velocity at time t of wall `group` >= 1.
+  virtual Vec<D> known_velocity(std::int32_t group, double t) const = 0;
+  /// Motion at time t of a body that has a known one.
+  virtual RigidMotion<D> known_motion(std::size_t /*body*/, double /*t*/) const { return {}; }
+  /// Force and torque at time t on a body, besides those on its constituents.
+  virtual RigidLoad<D> body_load(std::size_t /*body*/, double /*t*/) const { return {}; }
   /// Mirrors a free particle that left the box in a bounded direction back into it; true when it had.
   virtual bool confine(Vec<D>& r) const = 0;
 };
@@ -44,7 +48,7 @@ class NoSurroundings : public Surroundings<D> {
   }
   void add_driving_forces(const Particles<D>&, std::span<const Vec<D>>, double,
                           std::vector<Vec<D>>&) const override {}
-  Vec<D> known_velocity(std::int32_t, const Vec<D>&, double) const override { return {}; }
+  Vec<D> known_velocity(std::int32_t, double) const override { return {}; }
   bool confine(Vec<D>&) const override { return false; }
 };
 

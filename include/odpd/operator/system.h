@@ -22,6 +22,8 @@ class System {
   virtual int block_size() const = 0;      ///< unknowns per node
   virtual std::int64_t nodes() const = 0;  ///< number of nodes
   std::int64_t size() const { return nodes() * block_size(); }
+  /// The last of them, which a translation moves; those before are angular velocities of rigid bodies.
+  virtual std::int64_t translating_nodes() const { return nodes(); }
 
   /// y = A x; the same bits on any thread count. Sizes: size().
   virtual void apply(std::span<const double> x, std::span<double> y) const = 0;
@@ -41,6 +43,8 @@ class System {
   /// The centre of mass is to be held still although A is definite (the constrained problem).
   virtual bool holds_centre_of_mass() const = 0;
   bool projected() const { return translations_are_null() || holds_centre_of_mass(); }
+  /// x := Pi x; nothing where the problem is regular.
+  void project(std::span<double> x) const;
 
   /// Changes whenever A changes.
   virtual std::uint64_t generation() const = 0;

@@ -25,7 +25,7 @@ struct PairTerms {
 };
 
 /// Edges as structure of arrays, ordered by (i, j) with i < j in memory. Edges between two particles of known
-/// velocity are left out.
+/// velocity, or of one rigid body, are left out.
 template <int D>
 struct PairNetwork {
   std::int64_t particles = 0;

@@ -8,6 +8,7 @@
 #include "odpd/core/archive.h"
 #include "odpd/core/vec.h"
 #include "odpd/particles/field_table.h"
+#include "odpd/particles/rigid_body.h"
 
 namespace odpd {
 
@@ -28,10 +29,20 @@ class Particles {
   std::vector<std::int64_t>
       id;  ///< persistent identity, 0, 1, ...; survives reordering and restart
   std::vector<std::int32_t> species;  ///< index into the scene's species
-  std::vector<std::int32_t> group;    ///< 0: free (fluid); k >= 1: moves with wall k-1 of the scene
+  /// 0: free (fluid); k >= 1: known velocity, of wall k-1 of the scene or, above `walls`, of body k-1-walls;
+  /// -(k+1): constituent of body k, whose motion is unknown
+  std::vector<std::int32_t> group;
+  std::int32_t walls = 0;            ///< groups up to here are walls
+  std::vector<RigidBody<D>> bodies;  ///< those of unknown motion first
 
   std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
   bool is_free(std::size_t i) const { return group[i] == 0; }
+  bool is_known(std::size_t i) const { return group[i] > 0; }
+  /// Rigid body of a particle, -1 when it belongs to none.
+  std::int32_t body_of(std::size_t i) const {
+    if (bodies.empty() || (group[i] >= 0 && group[i] <= walls)) return -1;
+    return group[i] < 0 ? -group[i] - 1 : group[i] - 1 - walls;
+  }
   std::int64_t free_count() const;
 
   /// From now on `end_velocity` has an entry per particle, at first zero, and is state like the other fields.
@@ -42,8 +53,12 @@ class Particles {
   /// Memory index of each identity: result[id] = i.
   std::vector<std::int32_t> index_of_id() const;
 
-  void save(StateWriter& out) const { fields_.save(out); }
-  void load(const StateReader& in) { fields_.load(in); }
+  /// Appends a body and its constituents, which make its `members`. Those of unknown motion come before the others.
+  void add_body(RigidBody<D> body, const Box<D>& box, std::int32_t species_index);
+
+  void save(StateWriter& out) const;
+  /// Throws IoError when a field is missing or of another length than the others.
+  void load(const StateReader& in);
 
  private:
   FieldTable<D> fields_;

@@ -1,6 +1,6 @@
 #pragma once
 // A scene: the particles in their box, the pair model, flat walls of frozen particles with a smooth potential behind
-// their surface, and a body force. It is what the dynamics sees as its surroundings.
+// their surface, obstacles and rigid bodies, and a body force. It is what the dynamics sees as its surroundings.
 #include <memory>
 #include <vector>
 
@@ -28,8 +28,12 @@ class Scene : public Surroundings<D> {
   Vec<D> fluid_high() const { return settings_.fluid_high(); }
   double fluid_volume() const { return settings_.fluid_volume(); }
   double largest_kT() const;
-  /// Nothing takes momentum from the particles: no walls and no uniform drag.
-  bool conserves_momentum() const { return settings_.walls.empty() && settings_.zeta_0 == 0.0; }
+  /// Nothing takes momentum from the particles: no walls, no bodies of known motion and no uniform drag.
+  bool conserves_momentum() const { return !settings_.held() && settings_.zeta_0 == 0.0; }
+  /// The [[body]] that a body of the particles comes from.
+  const BodySettings<D>& body_settings(std::size_t body) const {
+    return settings_.bodies[body_kind_[body]];
+  }
 
   void add_potential_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
                             std::vector<Vec<D>>& force) const override;
@@ -38,7 +42,9 @@ class Scene : public Surroundings<D> {
                           std::vector<double>& laplacian) const override;
   void add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
                           double t, std::vector<Vec<D>>& force) const override;
-  Vec<D> known_velocity(std::int32_t group, const Vec<D>& r, double t) const override;
+  Vec<D> known_velocity(std::int32_t group, double t) const override;
+  RigidMotion<D> known_motion(std::size_t body, double t) const override;
+  RigidLoad<D> body_load(std::size_t body, double t) const override;
   bool confine(Vec<D>& r) const override;
 
  private:
@@ -48,6 +54,9 @@ class Scene : public Surroundings<D> {
   SceneSettings<D> settings_;
   std::unique_ptr<PairModel<D>> model_;
   Particles<D> particles_;
+  std::vector<std::size_t> body_kind_;  // of each body: its [[body]]
+  Vec<D>
+      counter_force_{};  // on each free particle, balances the forces on bodies that nothing else holds
 };
 
 }  // namespace odpd

@@ -7,6 +7,7 @@
 #include "odpd/core/config.h"
 #include "odpd/geometry/box.h"
 #include "odpd/pairs/dpd.h"
+#include "odpd/scene/bodies.h"
 #include "odpd/scene/physical_inputs.h"
 
 namespace odpd {
@@ -53,15 +54,18 @@ struct SceneSettings {
   double mass = 0.0;               ///< of every fluid particle
   double zeta_0 = 0.0;             ///< uniform drag on every fluid particle (mass/time)
   std::vector<WallSettings<D>> walls;
-  Vec<D> body_force{};  ///< on every free particle (force)
+  std::vector<BodySettings<D>> bodies;
+  Vec<D> body_force{};  ///< on every particle that moves (force)
   StartKind start = StartKind::random;
   std::string start_file;                   ///< for StartKind::file, resolved
   std::vector<Vec<D>> start_positions;      ///< contents of the start file, filled by io's caller
   std::vector<std::int32_t> start_species;  ///< one per start position
   std::int64_t relax_sweeps = 100;          ///< of overlap removal before the run
 
-  /// Something drives a flow: a body force or a moving wall.
+  /// Something drives a flow: a body force, a moving wall, a body that is moved or pushed.
   bool driven() const;
+  /// Walls, or bodies of known motion, take up momentum.
+  bool held() const;
   int wall_at(int axis, bool high) const;  ///< index into walls, -1 when there is none
   /// Ends of the space between the wall surfaces (the box itself where it is periodic), and its volume.
   Vec<D> fluid_low() const;
@@ -69,7 +73,7 @@ struct SceneSettings {
   double fluid_volume() const;
 };
 
-/// Reads [box], [fluid], [[species]], [[pair]], [[wall]], [body_force], [start] and `seed`. Throws ConfigError for
+/// Reads [box], [fluid], [[species]], [[pair]], [[wall]], [[body]], [body_force], [start] and `seed`. Throws ConfigError for
 /// values out of range and for contradictions (both gamma and sigma, a wall in a periodic direction, ...).
 template <int D>
 SceneSettings<D> read_scene_settings(const Config& config);

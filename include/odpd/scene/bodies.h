@@ -1,0 +1,47 @@
+#pragma once
+// Obstacles and rigid bodies of a scene: sets of particles that keep their shape. A body is fixed, moves as given, or moves
+// freely, with 3 (2D) or 6 (3D) unknowns.
+#include <string>
+#include <vector>
+
+#include "odpd/core/config.h"
+#include "odpd/geometry/box.h"
+#include "odpd/particles/particles.h"
+
+namespace odpd {
+
+enum class BodyMotion { fixed, given, free };
+
+/// One [[body]]: bodies of one shape.
+template <int D>
+struct BodySettings {
+  std::string name = "body";
+  std::vector<Vec<D>> shape;  ///< constituents, about their centre (length)
+  BodyMotion motion = BodyMotion::free;
+  std::int32_t species = 0;
+  std::int64_t count = 1;         ///< at random places, where there are no `positions`
+  std::vector<Vec<D>> positions;  ///< of the centres (length)
+  double clearance = 1.0;         ///< free space around a body placed at random (length)
+  RigidMotion<D> velocity;        ///< for BodyMotion::given
+  RigidLoad<D> load;              ///< force and torque on each, for BodyMotion::free
+
+  std::int64_t bodies() const {
+    return positions.empty() ? count : static_cast<std::int64_t>(positions.size());
+  }
+  /// Distance of the outermost constituent from the centre.
+  double radius() const;
+};
+
+/// Reads one [[body]] but its species. Throws ConfigError, also for a shape as long as half of a periodic edge of the box.
+template <int D>
+BodySettings<D> read_body(const Config& entry, const Box<D>& box);
+
+/// Adds all bodies to the particles, those of unknown motion first, each [[body]] in turn, and returns for each body of the
+/// particles the index of its [[body]]. Random places lie between `low` and `high`. Throws ConfigError where there is no
+/// room.
+template <int D>
+std::vector<std::size_t> place_bodies(const std::vector<BodySettings<D>>& settings,
+                                      const Box<D>& box, const Vec<D>& low, const Vec<D>& high,
+                                      std::uint64_t seed, Particles<D>& particles);
+
+}  // namespace odpd

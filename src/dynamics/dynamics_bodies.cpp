@@ -1,0 +1,73 @@
+// The parts of Dynamics that know rigid bodies: their arms, known motion, and motion along velocities of constituents.
+#include "odpd/dynamics/dynamics.h"
+
+namespace odpd {
+
+template <int D>
+std::vector<Vec<D>> Dynamics<D>::arms_at(std::span<const Vec<D>> positions) {
+  std::vector<Vec<D>> arms(positions.size()), own, points;
+  for (std::size_t b = 0; b < particles_.bodies.size(); ++b) {
+    const auto constituents = dofs().constituents(b);
+    points.clear();
+    for (const std::int32_t p : constituents)
+      points.push_back(positions[static_cast<std::size_t>(p)]);
+    own.resize(points.size());
+    find_arms<D>(box_, points, own);
+    for (std::size_t k = 0; k < own.size(); ++k)
+      arms[static_cast<std::size_t>(constituents[k])] = own[k];
+  }
+  return arms;
+}
+
+template <int D>
+void Dynamics<D>::place_arms(double time, Stage<D>& stage) {
+  stage.arms = arms_at(stage.position);
+  for (std::size_t b = 0; b < particles_.bodies.size(); ++b) {
+    if (!particles_.bodies[b].known) continue;
+    const RigidMotion<D> motion = surroundings_.known_motion(b, time);
+    for (const std::int32_t particle : dofs().constituents(b)) {
+      const auto p = static_cast<std::size_t>(particle);
+      stage.velocity[p] = motion.velocity + swing(motion.angular, stage.arms[p]);
+    }
+  }
+}
+
+template <int D>
+bool Dynamics<D>::advance(std::size_t body, const std::vector<Vec<D>>& velocity, double dt,
+                          RigidPose<D>& pose) {
+  const std::vector<Vec<D>>& frame = particles_.bodies[body].frame;
+  std::vector<Vec<D>> arms, velocities;
+  bool moves = false;
+  for (std::size_t k = 0; k < frame.size(); ++k) {
+    arms.push_back(pose.orientation.turn(frame[k]));
+    velocities.push_back(velocity[static_cast<std::size_t>(dofs().constituents(body)[k])]);
+    moves = moves || velocities.back() != Vec<D>{};
+  }
+  if (moves) pose.advance(rigid_motion<D>(arms, velocities), dt, box_);
+  return moves;
+}
+
+template <int D>
+void Dynamics<D>::place(std::size_t body, const RigidPose<D>& pose, std::vector<Vec<D>>& positions,
+                        std::vector<typename Particles<D>::Image>* images) {
+  typename Particles<D>::Image unused;
+  const auto constituents = dofs().constituents(body);
+  for (std::size_t k = 0; k < constituents.size(); ++k) {
+    const auto p = static_cast<std::size_t>(constituents[k]);
+    place_constituent(particles_.bodies[body], pose, k, box_, positions[p],
+                      images == nullptr ? unused : (*images)[p]);
+  }
+}
+
+#define ODPD_INSTANTIATE(D)                                                                \
+  template std::vector<Vec<D>> Dynamics<D>::arms_at(std::span<const Vec<D>>);              \
+  template void Dynamics<D>::place_arms(double, Stage<D>&);                                \
+  template bool Dynamics<D>::advance(std::size_t, const std::vector<Vec<D>>&, double,      \
+                                     RigidPose<D>&);                                       \
+  template void Dynamics<D>::place(std::size_t, const RigidPose<D>&, std::vector<Vec<D>>&, \
+                                   std::vector<typename Particles<D>::Image>*);
+ODPD_INSTANTIATE(2)
+ODPD_INSTANTIATE(3)
+#undef ODPD_INSTANTIATE
+
+}  // namespace odpd

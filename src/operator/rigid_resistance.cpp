@@ -1,0 +1,130 @@
+#include "odpd/operator/rigid_resistance.h"
+
+#include <algorithm>
+#include <map>
+
+namespace odpd {
+
+namespace {
+
+// target += left^T middle right, D x D row-major.
+template <int D>
+void add_triple_product(const double* left, const double* middle, const double* right,
+                        double* target) {
+  for (std::size_t row = 0; row < D; ++row)
+    for (std::size_t k = 0; k < D; ++k)
+      for (std::size_t l = 0; l < D; ++l) {
+        const double factor = left[k * D + row] * middle[k * D + l];
+        for (std::size_t col = 0; col < D; ++col)
+          target[row * D + col] += factor * right[l * D + col];
+      }
+}
+
+}  // namespace
+
+template <int D>
+void RigidResistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs,
+                                 const Particles<D>& particles, std::span<const Vec<D>> positions,
+                                 std::span<const Vec<D>> arms, double shift,
+                                 double stiffness_time) {
+  sites_.rebuild(network, dofs, particles, positions, shift, stiffness_time);
+  dofs_ = dofs.bodies() > 0 ? &dofs : nullptr;
+  if (dofs_ == nullptr) return;
+  arms_.assign(arms.begin(), arms.end());
+  node_.resize(static_cast<std::size_t>(dofs.sites()));
+  auto node = static_cast<std::int32_t>(dofs.free_node(0));
+  for (std::size_t s = 0; s < node_.size(); ++s) {
+    const auto p = static_cast<std::size_t>(dofs.particle_of(s));
+    node_[s] = particles.is_free(p) ? node++ : -particles.body_of(p) - 1;
+  }
+}
+
+template <int D>
+void RigidResistance<D>::apply(std::span<const double> x, std::span<double> y) const {
+  const auto n = static_cast<std::size_t>(dofs_->sites());
+  // Through vectors per particle: few of a scene's particles are known.
+  std::vector<Vec<D>> velocity, force(arms_.size());
+  dofs_->scatter(arms_, x, force, velocity);
+  std::vector<double> v(n * D), f(n * D);
+  for (std::size_t s = 0; s < n; ++s)
+    for (std::size_t c = 0; c < D; ++c)
+      v[s * D + c] = velocity[static_cast<std::size_t>(dofs_->particle_of(s))].x[c];
+  sites_.apply(v, f);
+  for (std::size_t s = 0; s < n; ++s)
+    for (std::size_t c = 0; c < D; ++c)
+      force[static_cast<std::size_t>(dofs_->particle_of(s))].x[c] = f[s * D + c];
+  std::vector<double> q;
+  dofs_->gather(arms_, force, q);
+  std::copy(q.begin(), q.end(), y.begin());
+  for (std::size_t w = 0; w < static_cast<std::size_t>(dofs_->bodies()); ++w)
+    for (std::size_t c = rotation_components<D>; c < D; ++c) y[w * D + c] = x[w * D + c];
+}
+
+template <int D>
+auto RigidResistance<D>::movers(std::size_t site) const -> std::vector<Mover> {
+  typename Resistance<D>::Block unit{}, turn{};
+  for (std::size_t c = 0; c < D; ++c) unit[c * D + c] = 1.0;
+  if (node_[site] >= 0) return {{static_cast<std::size_t>(node_[site]), unit}};
+  const auto body = static_cast<std::size_t>(-node_[site] - 1);
+  const Vec<D>& arm = arms_[static_cast<std::size_t>(dofs_->particle_of(site))];
+  for (std::size_t c = 0; c < D; ++c) {
+    Vec<D> w{};
+    w.x[c] = 1.0;
+    const Vec<D> v = swing(w, arm);
+    for (std::size_t row = 0; row < D; ++row) turn[row * D + c] = v.x[row];
+  }
+  return {{dofs_->body_node(body), unit}, {body, turn}};
+}
+
+template <int D>
+void RigidResistance<D>::add_unused(std::size_t node, double* block) const {
+  if (node >= static_cast<std::size_t>(dofs_->bodies())) return;
+  for (std::size_t c = rotation_components<D>; c < D; ++c) block[c * D + c] += 1.0;
+}
+
+template <int D>
+void RigidResistance<D>::block_diagonal(std::span<double> blocks) const {
+  std::fill(blocks.begin(), blocks.end(), 0.0);
+  // No edges inside a body: its constituents' diagonal blocks are all that falls on its own.
+  for (std::size_t s = 0; s < node_.size(); ++s)
+    for (const Mover& m : movers(s))
+      add_triple_product<D>(m.map.data(), sites_.diagonal()[s].data(), m.map.data(),
+                            &blocks[m.node * D * D]);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(nodes()); ++n)
+    add_unused(n, &blocks[n * D * D]);
+}
+
+template <int D>
+const BlockCsr& RigidResistance<D>::matrix() const {
+  if (matrix_generation_ == generation()) return matrix_;
+  const BlockCsr& inner = sites_.matrix();
+  const auto n = static_cast<std::size_t>(nodes());
+  std::vector<std::map<std::int32_t, typename Resistance<D>::Block>> rows(n);
+  for (std::size_t s = 0; s < node_.size(); ++s)
+    for (auto k = static_cast<std::size_t>(inner.start[s]);
+         k < static_cast<std::size_t>(inner.start[s + 1]); ++k)
+      for (const Mover& left : movers(s))
+        for (const Mover& right : movers(static_cast<std::size_t>(inner.column[k])))
+          add_triple_product<D>(left.map.data(), &inner.value[k * D * D], right.map.data(),
+                                rows[left.node][static_cast<std::int32_t>(right.node)].data());
+  BlockCsr m;
+  m.block = D;
+  m.rows = static_cast<std::int32_t>(n);
+  m.start.push_back(0);
+  for (std::size_t row = 0; row < n; ++row) {
+    add_unused(row, rows[row][static_cast<std::int32_t>(row)].data());
+    for (const auto& [column, block] : rows[row]) {
+      m.column.push_back(column);
+      m.value.insert(m.value.end(), block.begin(), block.end());
+    }
+    m.start.push_back(static_cast<std::int32_t>(m.column.size()));
+  }
+  matrix_ = std::move(m);
+  matrix_generation_ = generation();
+  return matrix_;
+}
+
+template class RigidResistance<2>;
+template class RigidResistance<3>;
+
+}  // namespace odpd

@@ -1,0 +1,121 @@
+#include "odpd/scene/bodies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "odpd/core/error.h"
+#include "odpd/core/random.h"
+
+namespace odpd {
+
+template <int D>
+double BodySettings<D>::radius() const {
+  double most = 0.0;
+  for (const Vec<D>& b : shape) most = std::max(most, norm(b));
+  return most;
+}
+
+namespace {
+
+// A random direction, or an angle in 2D, turned as far as `u` (uniform numbers) says: uniform over all orientations.
+void turn_at_random(const std::array<double, 4>& u, Rotation<2>& orientation) {
+  const Vec<2> angle{{2.0 * std::numbers::pi * u[0], 0.0}};
+  orientation.advance(angle);
+}
+void turn_at_random(const std::array<double, 4>& u, Rotation<3>& orientation) {
+  // Shoemake 1992: a uniform unit quaternion.
+  const double a = std::sqrt(1.0 - u[0]), b = std::sqrt(u[0]);
+  const double s = 2.0 * std::numbers::pi * u[1], t = 2.0 * std::numbers::pi * u[2];
+  const std::array<double, 4> q{b * std::cos(t), a * std::sin(s), a * std::cos(s), b * std::sin(t)};
+  orientation.set(q.data());
+}
+
+template <int D>
+struct Placer {
+  const Box<D>& box;
+  const Vec<D>& low;
+  const Vec<D>& high;
+  CounterRandom random;
+  struct Taken {
+    Vec<D> centre;
+    double reach;
+  };
+  std::vector<Taken> taken;
+
+  // Clear of the bodies placed so far, and of the ends of bounded directions.
+  bool fits(const Vec<D>& centre, double reach) const {
+    for (int c = 0; c < D; ++c)
+      if (!box.is_periodic(c) && (centre[c] - low[c] < reach || high[c] - centre[c] < reach))
+        return false;
+    return std::all_of(taken.begin(), taken.end(), [&](const Taken& t) {
+      return norm(box.separation(centre, t.centre)) >= std::max(reach + t.reach, 0.0);
+    });
+  }
+
+  RigidPose<D> random_pose(const BodySettings<D>& s, std::uint64_t number) const {
+    constexpr std::uint64_t most_attempts = 10000;
+    const double reach = s.radius() + 0.5 * s.clearance;
+    for (std::uint64_t attempt = 0; attempt < most_attempts; ++attempt) {
+      const auto u = random.uniforms(attempt, 0, number, 0);
+      RigidPose<D> pose;
+      for (int c = 0; c < D; ++c)
+        pose.centre[c] = low[c] + (high[c] - low[c]) * u[static_cast<std::size_t>(c)];
+      if (!fits(pose.centre, reach)) continue;
+      turn_at_random(random.uniforms(attempt, 1, number, 0), pose.orientation);
+      return pose;
+    }
+    throw ConfigError(fmt::format(
+        "[[body]] '{}': no room was found for body {} of {}: lower its count or clearance, give "
+        "positions, or use a larger box",
+        s.name, taken.size() + 1, s.bodies()));
+  }
+};
+
+}  // namespace
+
+template <int D>
+std::vector<std::size_t> place_bodies(const std::vector<BodySettings<D>>& settings,
+                                      const Box<D>& box, const Vec<D>& low, const Vec<D>& high,
+                                      std::uint64_t seed, Particles<D>& particles) {
+  Placer<D> placer{box, low, high, CounterRandom(seed, Stream::body_poses), {}};
+  // Given places come first, so that random ones keep clear of them.
+  std::vector<std::vector<RigidPose<D>>> poses(settings.size());
+  for (std::size_t k = 0; k < settings.size(); ++k)
+    for (const Vec<D>& centre : settings[k].positions) {
+      RigidPose<D> pose;
+      pose.centre = centre;
+      box.wrap(pose.centre);
+      poses[k].push_back(pose);
+      placer.taken.push_back({pose.centre, settings[k].radius() + 0.5 * settings[k].clearance});
+    }
+  std::uint64_t number = 0;
+  for (std::size_t k = 0; k < settings.size(); ++k)
+    for (std::int64_t n = 0; settings[k].positions.empty() && n < settings[k].count; ++n) {
+      poses[k].push_back(placer.random_pose(settings[k], number++));
+      placer.taken.push_back(
+          {poses[k].back().centre, settings[k].radius() + 0.5 * settings[k].clearance});
+    }
+  std::vector<std::size_t> kind;
+  for (const bool known : {false, true})
+    for (std::size_t k = 0; k < settings.size(); ++k) {
+      if ((settings[k].motion != BodyMotion::free) != known) continue;
+      for (const RigidPose<D>& pose : poses[k]) {
+        particles.add_body({{}, settings[k].shape, known, pose}, box, settings[k].species);
+        kind.push_back(k);
+      }
+    }
+  return kind;
+}
+
+#define ODPD_INSTANTIATE(D)                                                                      \
+  template struct BodySettings<D>;                                                               \
+  template std::vector<std::size_t> place_bodies<D>(const std::vector<BodySettings<D>>&,         \
+                                                    const Box<D>&, const Vec<D>&, const Vec<D>&, \
+                                                    std::uint64_t, Particles<D>&);
+ODPD_INSTANTIATE(2)
+ODPD_INSTANTIATE(3)
+#undef ODPD_INSTANTIATE
+
+}  // namespace odpd
