@@ -1,5 +1,9 @@
 #pragma once
 // Real DPD configurations for the contract tests: three models, three geometries, two dimensions.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
 #include <map>
 #include <string>
 #include <tuple>
@@ -8,21 +12,63 @@
 #include "odpd/core/error.h"
 #include "odpd/core/parallel.h"
 #include "odpd/dynamics/dynamics.h"
+#include "odpd/operator/edge_sums.h"
+#include "odpd/pairs/noise.h"
 #include "odpd/scene/scene.h"
 #include "support/network.h"
 
 namespace contract {
 
 enum class Model { central, transverse, far_friction };
-enum class Geometry { walls, periodic, open };
+enum class Geometry { walls, periodic, open, obstacles, suspension };
 
 inline std::string name(Model model) {
   return model == Model::central ? "central" : model == Model::transverse ? "transverse" : "far";
 }
 inline std::string name(Geometry geometry) {
-  return geometry == Geometry::walls      ? "walls"
-         : geometry == Geometry::periodic ? "periodic"
-                                          : "open";
+  return geometry == Geometry::walls       ? "walls"
+         : geometry == Geometry::periodic  ? "periodic"
+         : geometry == Geometry::open      ? "open"
+         : geometry == Geometry::obstacles ? "obstacles"
+                                           : "suspension";
+}
+
+/// Two rigid bodies, one of them pushed and turned; with walls also a fixed and a moving obstacle.
+template <int D>
+void add_bodies(odpd::SceneSettings<D>& s, bool walls) {
+  odpd::BodySettings<D> body;
+  for (int c = 0; c < D; ++c)
+    for (const double side : {-0.3, 0.35}) {
+      odpd::Vec<D> point = support::uniform_vec<D>(0.05 * c);
+      point[c] += side;
+      body.shape.push_back(point);
+    }
+  odpd::Vec<D> mean{};
+  for (const auto& point : body.shape)
+    mean += (1.0 / static_cast<double>(body.shape.size())) * point;
+  for (auto& point : body.shape) point -= mean;
+  const auto place = [&](double x, double last) {
+    odpd::Vec<D> r = support::uniform_vec<D>(x);
+    r[D - 1] = last;
+    return r;
+  };
+  const double low = walls ? 1.0 : 0.0;
+  body.positions = {place(0.2, low + 0.9)};
+  s.bodies.push_back(body);
+  body.positions = {place(1.7, low + 1.6)};
+  body.load.force[0] = 3.0;
+  body.load.torque[0] = -2.0;
+  s.bodies.push_back(body);
+  if (!walls) return;
+  body.load = {};
+  body.motion = odpd::BodyMotion::fixed;
+  body.positions = {place(1.0, low + 2.4)};
+  s.bodies.push_back(body);
+  body.motion = odpd::BodyMotion::given;
+  body.velocity.velocity[0] = 0.5;
+  body.velocity.angular[0] = -1.0;
+  body.positions = {place(2.6, low + 0.8)};
+  s.bodies.push_back(body);
 }
 
 /// Fluid of density 4 in a cube of edge `length`; walls, one of them moving, lie outside it. An
@@ -40,7 +86,9 @@ odpd::SceneSettings<D> settings(Model model, Geometry geometry, double length) {
     p.gamma_far = 0.1;
     p.cutoff_far = 1.5;
   }
-  if (geometry != Geometry::walls) return s;
+  if (geometry == Geometry::obstacles || geometry == Geometry::suspension)
+    add_bodies(s, geometry == Geometry::obstacles);
+  if (geometry != Geometry::walls && geometry != Geometry::obstacles) return s;
   s.box.size[D - 1] += 2.0;
   s.box.periodic[D - 1] = false;
   s.body_force[0] = 0.2;
@@ -70,7 +118,7 @@ class Instant {
     dynamics.evaluate(scene.particles().position, 0.0, stage);
     std::vector<odpd::Vec<D>> edge_noise;
     const auto xi = dynamics.draw_noise(stage, 3, 0.01, edge_noise);
-    dynamics.assemble(stage, {});
+    system = &dynamics.assemble(stage, {});
     load = dynamics.force(stage);
     for (std::size_t k = 0; k < load.size(); ++k) load[k] += xi[k];
   }
@@ -79,6 +127,8 @@ class Instant {
   odpd::Dynamics<D> dynamics;
   odpd::Stage<D> stage;
   std::vector<double> load;
+  const odpd::System* system =
+      nullptr;  ///< what the solvers get: `resistance` unless there are bodies
 
   const odpd::Resistance<D>& resistance() const { return dynamics.resistance(); }
 };
@@ -103,10 +153,65 @@ inline double true_residual(const odpd::System& system, std::vector<double> b,
                             const std::vector<double>& x) {
   std::vector<double> r = product(system, x);
   for (std::size_t k = 0; k < r.size(); ++k) r[k] = b[k] - r[k];
-  if (system.projected()) {
-    for (auto* vector : {&r, &b}) odpd::remove_mean(*vector, system.block_size());
-  }
+  system.project(r);
+  system.project(b);
   return support::norm(r) / support::norm(b);
+}
+
+// Random vectors orthonormal in the inner product of A: the noise along them, in units of sqrt(2 kT/dt), must be independent
+// standard normal numbers.
+inline std::vector<std::vector<double>> probes(const odpd::System& system, std::size_t count,
+                                               std::size_t unused) {
+  std::vector<std::vector<double>> found;
+  for (std::size_t k = 0; k < count; ++k) {
+    std::vector<double> a =
+        support::random_numbers(static_cast<std::size_t>(system.size()), 100 + k);
+    for (std::size_t n = 0; n < unused; ++n) a[2 * n + 1] = 0.0;
+    for (const auto& b : found) {
+      const double overlap = support::dot(a, product(system, b));
+      for (std::size_t n = 0; n < a.size(); ++n) a[n] -= overlap * b[n];
+    }
+    const double scale = 1.0 / std::sqrt(support::dot(a, product(system, a)));
+    for (double& value : a) value *= scale;
+    found.push_back(std::move(a));
+  }
+  return found;
+}
+
+// Estimators over n draws of z = a . xi / sqrt(2 kT/dt) along K probes, with their standard errors: mean square of one probe
+// (1, sqrt(2/n)), of all (1, sqrt(2/(n K))), product of two (0, sqrt(1/n)). Every bound is 5 standard errors; a covariance
+// wrong by a factor 1.1 lies 10 of them away.
+template <int D>
+void expect_noise_covariance(const Instant<D>& instant, const odpd::System& system) {
+  constexpr std::size_t n = 1250, K = 16;
+  constexpr double dt = 0.013, kT = 0.7;
+  const odpd::DofMap<D> dofs(instant.scene.particles());
+  // In 2D the second component of an angular velocity means nothing.
+  const auto a = probes(system, K, D == 2 ? static_cast<std::size_t>(dofs.bodies()) : 0);
+  std::array<std::array<double, K>, K> mean{};
+  std::vector<odpd::Vec<D>> on_edges;
+  std::vector<double> xi;
+  for (std::uint64_t step = 0; step < n; ++step) {
+    odpd::draw_edge_noise(instant.stage.network, instant.scene.particles(), 1, step, dt, on_edges);
+    std::vector<odpd::Vec<D>> force(instant.stage.position.size());
+    odpd::add_edge_forces<D>(instant.stage.network, on_edges, force);
+    dofs.gather(instant.stage.arms, force, xi);
+    std::array<double, K> z{};
+    for (std::size_t k = 0; k < K; ++k) z[k] = support::dot(a[k], xi) / std::sqrt(2.0 * kT / dt);
+    for (std::size_t k = 0; k < K; ++k) {
+      for (std::size_t l = 0; l <= k; ++l) mean[k][l] += z[k] * z[l] / n;
+    }
+  }
+  double pooled = 0.0;
+  for (std::size_t k = 0; k < K; ++k) {
+    EXPECT_NEAR(mean[k][k], 1.0, 5.0 * std::sqrt(2.0 / n)) << "probe " << k;
+    for (std::size_t l = 0; l < k; ++l) EXPECT_NEAR(mean[k][l], 0.0, 5.0 * std::sqrt(1.0 / n));
+    pooled += mean[k][k] / K;
+  }
+  const double bound = 5.0 * std::sqrt(2.0 / (n * K));
+  EXPECT_NEAR(pooled, 1.0, bound);
+  EXPECT_GT(std::abs(1.1 * pooled - 1.0), bound) << "the test would not notice a factor of 1.1";
+  EXPECT_GT(std::abs(pooled / 1.1 - 1.0), bound) << "the test would not notice a factor of 1/1.1";
 }
 
 }  // namespace contract

@@ -155,59 +155,9 @@ TEST_P(Operator, RotationsAreNullForCentralFrictionInTheOpen) {
   });
 }
 
-// Random vectors orthonormal in the inner product of R: the noise along them, in units of
-// sqrt(2 kT/dt), must be independent standard normal numbers.
-template <int D>
-std::vector<std::vector<double>> probes(const Instant<D>& instant, std::size_t count) {
-  std::vector<std::vector<double>> found;
-  for (std::size_t k = 0; k < count; ++k) {
-    std::vector<double> a = random_unknowns(instant, 100 + k);
-    for (const auto& b : found) {
-      const double overlap = support::dot(a, product(instant.resistance(), b));
-      for (std::size_t n = 0; n < a.size(); ++n) a[n] -= overlap * b[n];
-    }
-    const double scale = 1.0 / std::sqrt(support::dot(a, product(instant.resistance(), a)));
-    for (double& value : a) value *= scale;
-    found.push_back(std::move(a));
-  }
-  return found;
-}
-
-// Estimators over n draws of z = a . xi / sqrt(2 kT/dt) along K probes, with their standard errors:
-// mean square of one probe (1, sqrt(2/n)), of all (1, sqrt(2/(n K))), product of two (0,
-// sqrt(1/n)). Every bound is 5 standard errors; a covariance wrong by a factor 1.1 lies 10 of them
-// away.
 TEST_P(Operator, NoiseHasTheCovarianceOfFluctuationDissipation) {
   run([&]<int D>(const Instant<D>& instant) {
-    constexpr std::size_t n = 1250, K = 16;
-    constexpr double dt = 0.013, kT = 0.7;
-    const odpd::DofMap<D> dofs(instant.scene.particles());
-    const auto a = probes(instant, K);
-    std::array<std::array<double, K>, K> mean{};
-    std::vector<Vec<D>> on_edges;
-    std::vector<double> xi;
-    for (std::uint64_t step = 0; step < n; ++step) {
-      odpd::draw_edge_noise(instant.stage.network, instant.scene.particles(), 1, step, dt,
-                            on_edges);
-      std::vector<Vec<D>> force(instant.stage.position.size());
-      odpd::add_edge_forces<D>(instant.stage.network, on_edges, force);
-      dofs.gather({}, force, xi);
-      std::array<double, K> z{};
-      for (std::size_t k = 0; k < K; ++k) z[k] = support::dot(a[k], xi) / std::sqrt(2.0 * kT / dt);
-      for (std::size_t k = 0; k < K; ++k) {
-        for (std::size_t l = 0; l <= k; ++l) mean[k][l] += z[k] * z[l] / n;
-      }
-    }
-    double pooled = 0.0;
-    for (std::size_t k = 0; k < K; ++k) {
-      EXPECT_NEAR(mean[k][k], 1.0, 5.0 * std::sqrt(2.0 / n)) << "probe " << k;
-      for (std::size_t l = 0; l < k; ++l) EXPECT_NEAR(mean[k][l], 0.0, 5.0 * std::sqrt(1.0 / n));
-      pooled += mean[k][k] / K;
-    }
-    const double bound = 5.0 * std::sqrt(2.0 / (n * K));
-    EXPECT_NEAR(pooled, 1.0, bound);
-    EXPECT_GT(std::abs(1.1 * pooled - 1.0), bound) << "the test would not notice a factor of 1.1";
-    EXPECT_GT(std::abs(pooled / 1.1 - 1.0), bound) << "the test would not notice a factor of 1/1.1";
+    contract::expect_noise_covariance(instant, instant.resistance());
   });
 }
 
