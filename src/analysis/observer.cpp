@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "odpd/analysis/bodies.h"
 #include "odpd/analysis/density_residual.h"
 #include "odpd/analysis/msd.h"
 #include "odpd/analysis/profile.h"
@@ -145,9 +146,30 @@ std::unique_ptr<Observer<D>> make_msd(const Config& entry, ObserverSettings sett
   return std::make_unique<Msd<D>>(std::move(settings), m, scene, clock.dt);
 }
 
+template <int D>
+std::unique_ptr<Observer<D>> make_bodies(const Config& entry, ObserverSettings settings,
+                                         const Scene<D>& scene, const Clock& clock) {
+  if (scene.settings().bodies.empty()) entry.fail("kind", "the scene has no [[body]]");
+  BodiesSettings b;
+  b.window = entry.positive("window", b.window);
+  b.fit_from = entry.non_negative("fit_from", b.window / 3.0);
+  if (b.fit_from >= b.window) entry.fail("fit_from", "must be less than window");
+  double most = 2.0 * scene.model().cutoff();
+  for (int c = 0; c < D; ++c)
+    if (scene.box().is_periodic(c)) most = std::min(most, 0.5 * scene.box().size[c]);
+  b.r_max = entry.positive("r_max", most);
+  if (b.r_max > most && most < 2.0 * scene.model().cutoff())
+    entry.fail("r_max",
+               fmt::format("must be at most half the shortest periodic edge of the box, {}", most));
+  b.bin = entry.positive("bin", b.bin);
+  if (b.bin > b.r_max) entry.fail("bin", "must be less than r_max");
+  return std::make_unique<Bodies<D>>(std::move(settings), b, scene, clock.dt);
+}
+
 std::int64_t default_every(const std::string& kind, const Clock& clock) {
   if (kind == "thermo") return 5;
   if (kind == "rdf") return 20;
+  if (kind == "bodies") return 2;
   // Fifty lags of up to 0.06 time units.
   if (kind == "msd") return std::max<std::int64_t>(1, std::llround(0.05 / clock.dt));
   return 1;
@@ -173,6 +195,7 @@ std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::strin
       entry.fail("kind", "the scene has no [[wall]] to feel a force");
     return std::make_unique<WallForce<D>>(std::move(settings), scene);
   }
+  if (kind == "bodies") return make_bodies(entry, std::move(settings), scene, clock);
   return make_msd(entry, std::move(settings), scene, clock);
 }
 
@@ -182,8 +205,8 @@ template <int D>
 std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
                                                          const Scene<D>& scene, const Clock& clock,
                                                          bool steps_are_time) {
-  const std::vector<std::string> kinds{"thermo", "profile", "density-residual",
-                                       "rdf",    "msd",     "wall-force"};
+  const std::vector<std::string> kinds{"thermo",     "profile", "density-residual", "rdf", "msd",
+                                       "wall-force", "bodies"};
   std::vector<std::unique_ptr<Observer<D>>> observers;
   const auto have = [&](const std::string& kind) {
     return std::any_of(observers.begin(), observers.end(),

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "odpd/geometry/pair_list.h"
 
@@ -13,7 +12,7 @@ namespace {
 // Volume of a ball of radius r.
 template <int D>
 double ball(double r) {
-  return std::pow(std::numbers::pi, 0.5 * D) / std::tgamma(0.5 * D + 1.0) * std::pow(r, D);
+  return unit_ball_volume<D> * std::pow(r, D);
 }
 }  // namespace
 

@@ -7,6 +7,7 @@
 //   density-residual  unevenness of the time-averaged density on a grid
 //   rdf               radial distribution functions per pair of species
 //   wall-force        force per area on each wall, shear stress between two
+//   bodies            force, torque, motion and diffusion of obstacles and rigid bodies, the fluid around them
 //   msd               mean-square displacement and self-diffusion per species
 #include <memory>
 #include <string>

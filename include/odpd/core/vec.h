@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace odpd {
 
@@ -44,6 +45,10 @@ template <int D>
 double norm(const Vec<D>& a) {
   return std::sqrt(dot(a, a));
 }
+
+/// Volume of a ball of radius 1: pi (2D), 4 pi/3 (3D).
+template <int D>
+constexpr double unit_ball_volume = D == 2 ? std::numbers::pi : 4.0 * std::numbers::pi / 3.0;
 
 /// True when no component is NaN or infinite.
 template <int D>

@@ -34,6 +34,7 @@ class Scene : public Surroundings<D> {
   const BodySettings<D>& body_settings(std::size_t body) const {
     return settings_.bodies[body_kind_[body]];
   }
+  std::size_t body_kind(std::size_t body) const { return body_kind_[body]; }
 
   void add_potential_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
                             std::vector<Vec<D>>& force) const override;

@@ -1,0 +1,61 @@
+#pragma once
+// What happens to obstacles and rigid bodies, per [[body]] and averaged over its bodies:
+//
+//   force, torque     of the edges (conservative, friction and random), stage means; about the body's centre
+//   velocity, angular_velocity   of the motion over the step
+//   diffusion, rotational_diffusion   from mean-square displacements of centre and orientation (free bodies)
+//   g(q)              density of the fluid at distance q from the centre, relative to its mean (Phan-Thien et al. 2016,
+//                     eq. 48), and the exclusion radius: where it first exceeds 0.001
+//
+// and the mean velocity of the fluid particles. The orientation is followed by adding up the rotation from sample to sample,
+// so it must turn by less than half a turn between two.
+#include "odpd/analysis/displacements.h"
+#include "odpd/analysis/observer.h"
+
+namespace odpd {
+
+struct BodiesSettings {
+  double window = 3.0;    ///< longest lag of the displacements (time)
+  double fit_from = 1.0;  ///< shortest lag of the slope (time)
+  double r_max = 2.0;     ///< of g(q) (length)
+  double bin = 0.01;      ///< its bins (length)
+};
+
+template <int D>
+class Bodies : public Observer<D> {
+ public:
+  Bodies(ObserverSettings settings, BodiesSettings bodies, const Scene<D>& scene, double dt);
+  void measure(const Clock& clock, const Particles<D>& particles,
+               const StepRecord<D>& record) override;
+  void add_results(Results& results) const override;
+  std::vector<std::string> series_columns() const override;
+  std::vector<double> series_row() const override { return newest_; }
+  void save(StateWriter& out) const override;
+  void load(const StateReader& in) override;
+
+ private:
+  static constexpr std::size_t turns = rotation_components<D>;
+  static constexpr std::size_t width = 2 * (D + turns);  // columns of a [[body]]
+  void add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& noise, double weight);
+  void add_motion(const Particles<D>& particles, const StepRecord<D>& record);
+  void follow(const Particles<D>& particles);
+  void count_fluid(const Particles<D>& particles, const Stage<D>& stage);
+  void add_diffusion(const std::string& name, std::size_t kind, Results& results) const;
+  double exclusion_radius(std::size_t kind) const;
+
+  BodiesSettings bodies_;
+  const Scene<D>& scene_;
+  std::vector<std::size_t> kind_;                  // of each body
+  std::vector<std::string> names_;                 // of each [[body]]
+  std::vector<double> share_;                      // 1/bodies of each [[body]]
+  std::vector<std::vector<std::size_t>> members_;  // of each body, in this sample
+  std::size_t bins_;
+  BlockAverage average_;  // [[body]] after [[body]], then the fluid's velocity
+  BlockAverage density_;  // [kind * bins + bin]
+  Displacements places_, turns_;
+  std::vector<double> angle_;        // rotation so far, D numbers per body
+  std::vector<double> orientation_;  // at the last sample
+  std::vector<double> newest_;
+};
+
+}  // namespace odpd

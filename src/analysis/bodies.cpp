@@ -1,0 +1,278 @@
+#include "odpd/analysis/bodies.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "odpd/operator/edge_sums.h"
+
+namespace odpd {
+
+namespace {
+
+// The rotation vector (angle) that takes one orientation to another.
+Vec<2> turn_between(const Rotation<2>& from, const Rotation<2>& to) {
+  const auto a = from.values(), b = to.values();
+  return {{std::atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]), 0.0}};
+}
+Vec<3> turn_between(const Rotation<3>& from, const Rotation<3>& to) {
+  const auto a = from.values(), b = to.values();  // b a^-1
+  const Vec<3> u{{a[1], a[2], a[3]}}, v{{b[1], b[2], b[3]}};
+  double re = a[0] * b[0] + dot(u, v);
+  Vec<3> im = a[0] * v - b[0] * u - swing(v, u);
+  if (re < 0.0) {
+    re = -re;
+    im *= -1.0;
+  }
+  const double size = norm(im);
+  return (size > 0.0 ? 2.0 * std::atan2(size, re) / size : 2.0) * im;
+}
+
+// Volume between the radii a and b, in D dimensions.
+template <int D>
+double shell(double a, double b) {
+  return unit_ball_volume<D> * (std::pow(b, D) - std::pow(a, D));
+}
+
+constexpr double excluded = 1e-3;  // g below this is none
+
+}  // namespace
+
+template <int D>
+Bodies<D>::Bodies(ObserverSettings settings, BodiesSettings bodies, const Scene<D>& scene,
+                  double dt)
+    : Observer<D>(std::move(settings)),
+      bodies_(bodies),
+      scene_(scene),
+      bins_(static_cast<std::size_t>(std::llround(bodies.r_max / bodies.bin))),
+      average_(scene.settings().bodies.size() * width + D),
+      density_(scene.settings().bodies.size() * bins_),
+      places_(bodies.window, bodies.fit_from, dt * static_cast<double>(this->settings().every),
+              scene.settings().bodies.size()),
+      turns_(bodies.window, bodies.fit_from, dt * static_cast<double>(this->settings().every),
+             scene.settings().bodies.size()) {
+  share_.assign(scene.settings().bodies.size(), 0.0);
+  for (std::size_t b = 0; b < scene.particles().bodies.size(); ++b) {
+    kind_.push_back(scene.body_kind(b));
+    share_[kind_.back()] += 1.0;
+  }
+  for (double& s : share_) s = 1.0 / s;
+  for (const BodySettings<D>& body : scene.settings().bodies) names_.push_back(body.name);
+  angle_.assign(kind_.size() * D, 0.0);
+}
+
+template <int D>
+void Bodies<D>::add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& noise, double weight) {
+  std::vector<Vec<D>> force(stage.position.size());
+  add_conservative_forces(stage.network, force);
+  add_friction_forces<D>(stage.network, stage.velocity, force);
+  for (std::size_t b = 0; b < kind_.size(); ++b) {
+    Vec<D> total{}, moment{};
+    for (const std::size_t p : members_[b]) {
+      const Vec<D> f = weight * (force[p] + noise[p]);
+      total += f;
+      moment += torque(stage.arms[p], f);
+    }
+    double* const out = &newest_[kind_[b] * width];
+    for (std::size_t c = 0; c < D; ++c) out[c] += share_[kind_[b]] * total.x[c];
+    for (std::size_t c = 0; c < turns; ++c) out[D + c] += share_[kind_[b]] * moment.x[c];
+  }
+}
+
+template <int D>
+void Bodies<D>::add_motion(const Particles<D>& particles, const StepRecord<D>& record) {
+  std::vector<Vec<D>> arms, velocities;
+  for (std::size_t b = 0; b < kind_.size(); ++b) {
+    arms.clear();
+    velocities.clear();
+    for (const std::size_t p : members_[b]) {
+      arms.push_back(record.start.arms[p]);
+      velocities.push_back(record.v_mid[p]);
+    }
+    RigidMotion<D> motion;
+    if (scene_.body_settings(b).motion != BodyMotion::fixed)
+      motion = rigid_motion<D>(arms, velocities);
+    double* const out = &newest_[kind_[b] * width + D + turns];
+    for (std::size_t c = 0; c < D; ++c) out[c] += share_[kind_[b]] * motion.velocity.x[c];
+    for (std::size_t c = 0; c < turns; ++c) out[D + c] += share_[kind_[b]] * motion.angular.x[c];
+  }
+  const double share = 1.0 / static_cast<double>(particles.free_count());
+  for (std::size_t i = 0; i < record.v_mid.size(); ++i)
+    if (particles.is_free(i))
+      for (std::size_t c = 0; c < D; ++c)
+        newest_[names_.size() * width + c] += share * record.v_mid[i].x[c];
+}
+
+template <int D>
+void Bodies<D>::follow(const Particles<D>& particles) {
+  std::vector<double> centres;
+  std::vector<std::int32_t> kind;
+  constexpr std::size_t numbers = Rotation<D>::numbers;
+  const bool first = orientation_.empty();
+  orientation_.resize(kind_.size() * numbers);
+  for (std::size_t b = 0; b < kind_.size(); ++b) {
+    const RigidPose<D>& pose = particles.bodies[b].pose;
+    kind.push_back(particles.bodies[b].known ? -1 : static_cast<std::int32_t>(kind_[b]));
+    for (std::size_t c = 0; c < D; ++c)
+      centres.push_back(pose.centre.x[c] + pose.image[c] * scene_.box().size.x[c]);
+    if (!first) {
+      Rotation<D> before;
+      before.set(&orientation_[b * numbers]);
+      const Vec<D> turn = turn_between(before, pose.orientation);
+      for (std::size_t c = 0; c < D; ++c) angle_[b * D + c] += turn.x[c];
+    }
+    const auto q = pose.orientation.values();
+    std::copy(q.begin(), q.end(), orientation_.begin() + static_cast<std::ptrdiff_t>(b * numbers));
+  }
+  std::vector<int> all, rotations;
+  for (int c = 0; c < D; ++c) all.push_back(c);
+  for (int c = 0; c < rotation_components<D>; ++c) rotations.push_back(c);
+  places_.add(std::move(centres), kind, D, all);
+  turns_.add(angle_, kind, D, rotations);
+}
+
+template <int D>
+void Bodies<D>::count_fluid(const Particles<D>& particles, const Stage<D>& stage) {
+  const double per_particle = scene_.fluid_volume() / static_cast<double>(particles.free_count());
+  std::vector<double> g(density_.width(), 0.0);
+  for (std::size_t b = 0; b < kind_.size(); ++b) {
+    const Vec<D> centre = stage.position[members_[b][0]] - stage.arms[members_[b][0]];
+    for (std::size_t i = 0; i < stage.position.size(); ++i) {
+      if (!particles.is_free(i)) continue;
+      const double q = norm(scene_.box().separation(stage.position[i], centre));
+      const auto bin = static_cast<std::size_t>(q / bodies_.bin);
+      if (bin < bins_)
+        g[kind_[b] * bins_ + bin] += share_[kind_[b]] * per_particle /
+                                     shell<D>(bodies_.bin * static_cast<double>(bin),
+                                              bodies_.bin * static_cast<double>(bin + 1));
+    }
+  }
+  density_.add(g);
+}
+
+template <int D>
+void Bodies<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
+  newest_.assign(average_.width(), 0.0);
+  const std::vector<std::int32_t> index = particles.index_of_id();
+  members_.assign(kind_.size(), {});
+  for (std::size_t b = 0; b < kind_.size(); ++b)
+    for (const std::int64_t id : particles.bodies[b].members)
+      members_[b].push_back(static_cast<std::size_t>(index[static_cast<std::size_t>(id)]));
+  std::vector<Vec<D>> noise(record.start.position.size());
+  if (!record.edge_noise.empty())
+    add_edge_forces<D>(record.start.network, record.edge_noise, noise);
+  add_stage(record.start, noise, record.start_weight);
+  if (record.has_corrector()) add_stage(record.corrector, noise, 1.0 - record.start_weight);
+  add_motion(particles, record);
+  average_.add(newest_);
+  follow(particles);
+  count_fluid(particles, record.start);
+}
+
+template <int D>
+std::vector<std::string> Bodies<D>::series_columns() const {
+  std::vector<std::string> columns;
+  const auto add = [&](const std::string& what, std::size_t count) {
+    for (std::size_t c = 0; c < count; ++c)
+      columns.push_back(count == 1 ? what : fmt::format("{}_{}", what, "xyz"[c]));
+  };
+  for (const std::string& name : names_) {
+    add(name + "_force", D);
+    add(name + "_torque", turns);
+    add(name + "_velocity", D);
+    add(name + "_angular_velocity", turns);
+  }
+  add("fluid_velocity", D);
+  return columns;
+}
+
+template <int D>
+double Bodies<D>::exclusion_radius(std::size_t kind) const {
+  for (std::size_t k = 0; k < bins_; ++k)
+    if (density_.mean(kind * bins_ + k) >= excluded) return bodies_.bin * static_cast<double>(k);
+  return std::nan("");
+}
+
+template <int D>
+void Bodies<D>::add_diffusion(const std::string& name, std::size_t kind, Results& results) const {
+  if (scene_.settings().bodies[kind].motion != BodyMotion::free) return;
+  if (places_.windows() == 0) {
+    results.notes.push_back(fmt::format(
+        "{}: the measured part is shorter than the window of {}, so no diffusion coefficients",
+        this->settings().name, bodies_.window));
+    return;
+  }
+  results.scalars.push_back({name + ".diffusion", places_.diffusion().mean(kind),
+                             places_.diffusion().standard_error(kind)});
+  results.scalars.push_back({name + ".rotational_diffusion", turns_.diffusion().mean(kind),
+                             turns_.diffusion().standard_error(kind)});
+}
+
+template <int D>
+void Bodies<D>::add_results(Results& results) const {
+  if (average_.samples() == 0) return;
+  const std::string& observer = this->settings().name;
+  std::size_t column = 0;
+  const auto add = [&](const std::string& what, std::size_t count) {
+    for (std::size_t c = 0; c < count; ++c, ++column)
+      results.scalars.push_back({count == 1 ? what : fmt::format("{}.{}", what, "xyz"[c]),
+                                 average_.mean(column), average_.standard_error(column)});
+  };
+  Table table;
+  table.columns = {"q"};
+  Chart chart{.title = "Fluid around the centre of a body",
+              .x_label = "q / r_c",
+              .y_label = "g(q)",
+              .curves = {}};
+  for (std::size_t k = 0; k < bins_; ++k)
+    table.rows.push_back({bodies_.bin * (static_cast<double>(k) + 0.5)});
+  for (std::size_t kind = 0; kind < names_.size(); ++kind) {
+    const std::string name = observer + "." + names_[kind];
+    add(name + ".force", D);
+    add(name + ".torque", turns);
+    add(name + ".velocity", D);
+    add(name + ".angular_velocity", turns);
+    add_diffusion(name, kind, results);
+    results.scalars.push_back({name + ".exclusion_radius", exclusion_radius(kind), std::nan("")});
+    table.columns.insert(table.columns.end(),
+                         {"g_" + names_[kind], "g_" + names_[kind] + "_error"});
+    Curve curve{
+        .title = names_[kind], .x = {}, .y = {}, .error = {}, .line = true, .points = false};
+    for (std::size_t k = 0; k < bins_; ++k) {
+      const std::size_t at = kind * bins_ + k;
+      table.rows[k].insert(table.rows[k].end(), {density_.mean(at), density_.standard_error(at)});
+      curve.x.push_back(table.rows[k][0]);
+      curve.y.push_back(density_.mean(at));
+    }
+    chart.curves.push_back(std::move(curve));
+  }
+  add(observer + ".fluid_velocity", D);
+  results.tables.emplace_back(observer, std::move(table));
+  results.charts.emplace_back(observer, std::move(chart));
+}
+
+template <int D>
+void Bodies<D>::save(StateWriter& out) const {
+  average_.save(out, "average");
+  density_.save(out, "density");
+  places_.save(out, "places_");
+  turns_.save(out, "turns_");
+  out.write("angle", angle_);
+  out.write("orientation", orientation_);
+}
+
+template <int D>
+void Bodies<D>::load(const StateReader& in) {
+  average_.load(in, "average");
+  density_.load(in, "density");
+  places_.load(in, "places_", kind_.size() * D);
+  turns_.load(in, "turns_", kind_.size() * D);
+  angle_ = in.read_doubles("angle");
+  orientation_ = in.read_doubles("orientation");
+}
+
+template class Bodies<2>;
+template class Bodies<3>;
+
+}  // namespace odpd
