@@ -28,9 +28,10 @@ template <int D>
 void stiffen(Problem<D>& problem, double ratio) {
   const odpd::CounterRandom random(1, odpd::Stream::probe);
   auto& network = problem.stage.network;
-  for (std::size_t k = 0; k < network.k_c.size(); ++k) {
+  const auto k_c = network.k_c.each();
+  for (std::size_t k = 0; k < k_c.size(); ++k) {
     const bool bond = random.uniforms(1, 0, k, 0)[0] < 0.1;
-    network.k_c[k] = bond ? ratio * network.zeta_par[k] / time_step : 0.0;
+    k_c[k] = bond ? ratio * network.zeta_par[k] / time_step : 0.0;
   }
   problem.stiffness_time = time_step;
 }

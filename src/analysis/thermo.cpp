@@ -58,7 +58,7 @@ void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepR
   }
   const auto n = static_cast<double>(particles.free_count());
   const double volume = scene_.fluid_volume();
-  newest_ = {(fixed_sum(network.u) + wall_energy) / n,
+  newest_ = {(network.u.sum() + wall_energy) / n,
              (n * scene_.largest_kT() + fixed_sum(virial) / D) / volume, fixed_sum(force_squared),
              fixed_sum(laplacian), kinetic_temperature(scene_, particles, record.v_start)};
   average_.add(newest_);

@@ -179,8 +179,8 @@ const System& Dynamics<D>::assemble(const Stage<D>& stage, const StepWeights& we
   resistance_.rebuild(stage.network, dofs(), particles_, stage.position, stage.arms,
                       weights.inertia + settings_.zeta_0, weights.stiffness_time);
   if (weights.stiffness_time > 0.0)
-    statistics_.clamped += std::count_if(stage.network.k_c.begin(), stage.network.k_c.end(),
-                                         [](double k) { return k < 0.0; });
+    for (std::size_t k = 0; k < stage.network.k_c.size(); ++k)
+      if (stage.network.k_c[k] < 0.0) ++statistics_.clamped;
   return resistance_.system();
 }
 

@@ -56,12 +56,13 @@ void MonteCarlo<D>::check(Dynamics<D>& dynamics) {
         "integrator.name = \"trapezoidal\"");
   refuse_driving(dynamics, 0.0);
   dynamics.evaluate(dynamics.particles().position, 0.0, record_.start);
-  for (const double pair_kT : record_.start.network.kT)
-    if (pair_kT != kT)
+  const PairNetwork<D>& network = record_.start.network;
+  for (std::size_t k = 0; k < network.kT.size(); ++k)
+    if (network.kT[k] != kT)
       throw ConfigError(fmt::format(
           "integrator 'monte-carlo' samples one temperature, but there are pairs of kT = {} and of "
           "{}: give all the same, or use integrator.name = \"trapezoidal\"",
-          kT, pair_kT));
+          kT, network.kT[k]));
   if (step_ == 0.0) step_ = 0.3 * dynamics.model().cutoff();
   energy_ = std::make_unique<LocalEnergy<D>>(dynamics.box(), dynamics.model(),
                                              dynamics.surroundings(), dynamics.particles());

@@ -9,6 +9,7 @@
 
 #include "odpd/core/error.h"
 #include "odpd/core/parallel.h"
+#include "odpd/core/room.h"
 
 namespace odpd {
 
@@ -60,7 +61,7 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
   const auto n_nodes = static_cast<std::size_t>(nodes_);
   weigh_edges(network);
   count_links(network, dofs);
-  links_.resize(static_cast<std::size_t>(start_.back()));
+  resize_afresh(links_, static_cast<std::size_t>(start_.back()));
   const bool anchored = shift != 0.0 || dofs.sites() < dofs.particles();
   anchor_.assign(anchored ? n_nodes : 0, Block{});
   diagonal_.resize(n_nodes);
@@ -86,9 +87,8 @@ template <int D>
 void Resistance<D>::weigh_edges(const PairNetwork<D>& network) {
   const bool stiff = stiffness_time_ != 0.0, transverse = network.transverse;
   const auto edges = static_cast<std::size_t>(network.size());
-  if (g_.capacity() < edges) g_.reserve(edges + edges / 32);  // their number varies a little
-  g_.resize(edges);
-  across_.resize(transverse ? edges : 0);
+  resize_afresh(g_, edges);
+  resize_afresh(across_, transverse ? edges : 0);
   parallel_for(network.size(), [&](std::int64_t edge) {
     const auto k = static_cast<std::size_t>(edge);
     double along = network.zeta_par[k];

@@ -94,28 +94,24 @@ void DpdModel<D>::write_edges(const PairList<D>& list, const Box<D>& box,
                             list, box, positions, particles, network);
   const bool far = p.gamma_far > 0.0, even = p.a == 0.0 || (p.s_bar == 1.0 && !far);
   network.transverse = p.gamma_perp > 0.0;
-  if (network.transverse) network.constant_zeta_perp.vary();
-  if (!even) network.constant_k_c.vary();
-  if (p.a > 0.0) {
-    network.constant_f_c.vary();
-    network.constant_u.vary();
-  }
+  // What is one number for all edges, or else is written by the kernel.
+  const auto column = [](Column& c, bool constant, double value) {
+    constant ? c.fill(value) : void(c.each());
+  };
+  column(network.kT, true, p.kT);
+  column(network.zeta_perp, !network.transverse, 0.0);
+  column(network.k_c, even, p.a * p.s_bar / p.cutoff);
+  column(network.u, p.a == 0.0, 0.0);
   const auto& kernel = for_isa(kernels::edge_portable, kernels::edge_avx2, kernels::edge_avx512);
   const kernels::DpdKernelParameters parameters{p.a, p.s_bar,  p.gamma,     p.gamma_perp,
                                                 p.s, p.cutoff, p.gamma_far, p.cutoff_far};
   const auto fill = [&](PairNetwork<D>& n, std::size_t begin, std::size_t end) {
+    const auto from_begin = [&](Column& c) { return c.varies() ? &c.each()[begin] : nullptr; };
     kernel.dpd(parameters, static_cast<int>(end - begin), &n.r[begin],
-               {&n.u[begin], &n.f_c[begin], even ? nullptr : &n.k_c[begin], &n.zeta_par[begin],
-                n.transverse ? &n.zeta_perp[begin] : nullptr});
+               {from_begin(n.u), &n.f_c[begin], from_begin(n.k_c), &n.zeta_par[begin],
+                from_begin(n.zeta_perp)});
   };
   write_edge_geometry<D>(list, cutoff_, box, positions, particles, fill, network);
-  if (even) network.constant_k_c.fill(network.k_c, p.a * p.s_bar / p.cutoff);
-  if (!network.transverse) network.constant_zeta_perp.fill(network.zeta_perp, 0.0);
-  if (p.a == 0.0) {
-    network.constant_f_c.fill(network.f_c, 0.0);
-    network.constant_u.fill(network.u, 0.0);
-  }
-  network.constant_kT.fill(network.kT, p.kT);
 }
 
 template class DpdModel<2>;

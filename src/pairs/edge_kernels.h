@@ -15,7 +15,7 @@ struct DpdKernelParameters {
   double a, s_bar, gamma, gamma_perp, s, cutoff, gamma_far, cutoff_far;
 };
 
-/// Columns of a network at the first edge of a block. k_c and zeta_perp may be null: not wanted.
+/// Columns of a network at the first edge of a block. u, k_c and zeta_perp may be null: not wanted.
 struct DpdColumns {
   double *u, *f_c, *k_c, *zeta_par, *zeta_perp;
 };

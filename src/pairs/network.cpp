@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "odpd/core/room.h"
 #include "odpd/pairs/edge_loop.h"
 
 namespace odpd {
@@ -18,18 +19,10 @@ void PairNetwork<D>::resize(std::int64_t edges) {
   resize_one(i);
   resize_one(j);
   resize_one(e);
-  for (auto* column : {&r, &u, &f_c, &k_c, &zeta_par, &zeta_perp, &kT}) resize_one(*column);
-  for (auto* constant :
-       {&constant_k_c, &constant_zeta_perp, &constant_kT, &constant_f_c, &constant_u})
-    constant->cut(n);
-}
-
-template <int D>
-void PairNetwork<D>::ConstantColumn::fill(std::vector<double>& column, double value) {
-  if (value_ != value) filled_ = 0;
-  value_ = value;
-  std::fill(column.begin() + static_cast<std::ptrdiff_t>(filled_), column.end(), value);
-  filled_ = column.size();
+  resize_one(r);
+  resize_one(f_c);
+  resize_one(zeta_par);
+  for (Column* column : {&u, &k_c, &zeta_perp, &kT}) column->resize(n);
 }
 
 template <int D>
@@ -62,8 +55,7 @@ void PairNetwork<D>::index_rows() {
     start[p + 1] = start[p] + next[p] + (first[p + 1] - first[p]);
     next[p] = static_cast<std::int32_t>(start[p]);
   }
-  if (edge.capacity() < 2 * i.size()) edge.reserve(2 * i.size() + i.size() / 16);
-  edge.resize(2 * i.size());
+  resize_afresh(edge, 2 * i.size());
   for_each_owned_edge(
       *this,
       [&](std::size_t p, std::size_t k) {
@@ -77,10 +69,13 @@ void PairNetwork<D>::index_rows() {
 
 template <int D>
 std::int64_t PairNetwork<D>::bytes() const {
-  constexpr std::size_t per_edge = 2 * sizeof(std::int32_t) + sizeof(Vec<D>) + 7 * sizeof(double);
-  return static_cast<std::int64_t>(
-      i.size() * per_edge + (edge.size() + scratch.size() + next.size()) * sizeof(std::int32_t) +
-      (start.size() + first.size()) * sizeof(std::int64_t));
+  constexpr std::size_t per_edge = 2 * sizeof(std::int32_t) + sizeof(Vec<D>) + 3 * sizeof(double);
+  std::int64_t columns = 0;
+  for (const Column* column : {&u, &k_c, &zeta_perp, &kT}) columns += column->bytes();
+  return columns + static_cast<std::int64_t>(i.size() * per_edge +
+                                             (edge.size() + scratch.size() + next.size()) *
+                                                 sizeof(std::int32_t) +
+                                             (start.size() + first.size()) * sizeof(std::int64_t));
 }
 
 template struct PairNetwork<2>;

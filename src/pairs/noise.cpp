@@ -4,6 +4,7 @@
 
 #include "odpd/core/parallel.h"
 #include "odpd/core/random.h"
+#include "odpd/core/room.h"
 
 namespace odpd {
 
@@ -90,7 +91,7 @@ void draw_edge_noise(const PairNetwork<D>& network, const Particles<D>& particle
                      std::uint64_t seed, std::uint64_t step, double dt,
                      std::vector<Vec<D>>& force) {
   const PairRandom random(seed, step);
-  force.resize(static_cast<std::size_t>(network.size()));
+  resize_afresh(force, static_cast<std::size_t>(network.size()));
   parallel_ranges(network.size(), drawn_at_once, [&](std::int64_t begin, std::int64_t end) {
     const PairBlock<D> pairs(network, particles, begin, end);
     std::array<double, drawn_at_once> w;

@@ -13,6 +13,7 @@ class CgEngine {
   virtual ~CgEngine() = default;
   virtual void set_up(const System& system) = 0;
   /// As Solver::attempt, in at most `most_iterations` iterations.
+  /// A failure, unless these did not suffice, leaves x as it was.
   virtual Solver::Attempt attempt(std::span<const double> b, std::span<double> x, double tolerance,
                                   std::int64_t most_iterations) = 0;
   virtual std::int64_t memory_bytes() const = 0;

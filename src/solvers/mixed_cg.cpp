@@ -4,7 +4,7 @@
 //
 // Where the recursive residual has fallen far below that of the last double one, x and r are brought up to date in double
 // and the iteration goes on with its search direction (reliable updates; Clark et al. 2010). On a held system Pi is
-// applied to p and A p.
+// applied to p and A p. Single precision holds out up to condition numbers of some 1e7; beyond, the attempt gives up.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -28,8 +28,11 @@ constexpr std::int64_t block_places = 1024;  // of sums, whatever the threads
 constexpr double trusted_fall = 1e-4;
 // Aimed at, in units of the tolerance: the double residual may be a little larger than the recursive one.
 constexpr double aim = 0.8;
-// Iterations without halving the residual after which the grid is given up.
-constexpr std::int64_t patience = 200;
+// Iterations without halving the residual after which the grid is given up, and then single precision. A box two
+// cutoffs thin, which takes block-Jacobi thousands of iterations, needs 260.
+constexpr std::int64_t patience_with_grid = 200, patience = 1000;
+// After so many the system is badly conditioned, and the recursive residual not trusted at any tolerance.
+constexpr std::int64_t unsuspicious = 500;
 // Fewer iterations say nothing of the rate.
 constexpr std::int64_t fewest_for_rate = 8;
 // `auto` (docs/performance.md has the measurements): the grid costs two to three times as much per iteration. Below so many
@@ -105,8 +108,9 @@ class MixedCg : public CgEngine {
   FloatArray inverse_;  // of the diagonal blocks: upper triangles, 16 places side by side
   FloatArray r_, z_, p_, q_, x_;
   std::vector<double> residual_;
-  std::vector<double> guess_;  // of the attempt at hand, for the fallback
-  std::vector<double> sums_;   // two per block
+  double first_residual_ = 0.0;  // its norm at the start of an attempt
+  std::vector<double> guess_;    // of the attempt at hand, for whoever starts over
+  std::vector<double> sums_;     // two per block
 };
 
 template <int D>
@@ -282,7 +286,8 @@ void MixedCg<D>::project(FloatArray& v) {
 template <int D>
 auto MixedCg<D>::iterate(std::span<const double> b, std::span<double> x, double goal,
                          std::int64_t most_iterations, Solver::Attempt& result) -> Outcome {
-  double scale = true_residual(b, x);
+  const double scale = true_residual(b, x);
+  first_residual_ = scale;
   if (scale <= goal) return Outcome::reached;
   if (!std::isfinite(scale)) {
     result.failure = no_longer_finite;
@@ -311,7 +316,8 @@ auto MixedCg<D>::iterate(std::span<const double> b, std::span<double> x, double 
     const bool reached = norm * scale <= aim * goal;
     if (reached || norm < trusted_fall * updated) {
       flush(x, scale);
-      if (reached && goal > trusted_fall * updated * scale) return Outcome::reached;
+      if (reached && goal > trusted_fall * updated * scale && result.iterations < unsuspicious)
+        return Outcome::reached;
       norm = true_residual(b, x) / scale;
       if (norm * scale <= goal) return Outcome::reached;
       updated = norm;
@@ -325,7 +331,7 @@ auto MixedCg<D>::iterate(std::span<const double> b, std::span<double> x, double 
     }
     since_smallest = norm < 0.5 * smallest ? 0 : since_smallest + 1;
     smallest = std::min(smallest, since_smallest == 0 ? norm : smallest);
-    if (with_grid_ && since_smallest > patience) {
+    if (since_smallest > (with_grid_ ? patience_with_grid : patience)) {
       flush(x, scale);
       result.failure = "the residual falls too slowly";
       return Outcome::gave_up;
@@ -343,8 +349,7 @@ Solver::Attempt MixedCg<D>::attempt(std::span<const double> b, std::span<double>
                                     double tolerance, std::int64_t most_iterations) {
   Solver::Attempt result;
   const double goal = tolerance * fixed_norm(b);
-  const double before = with_grid_ ? true_residual(b, x) : 0.0;
-  if (with_grid_) guess_.assign(x.begin(), x.end());
+  guess_.assign(x.begin(), x.end());
   Outcome outcome = iterate(b, x, goal, most_iterations, result);
   if (with_grid_ && outcome == Outcome::gave_up) {
     note_ = "multilevel gave up (" + result.failure + "): block-Jacobi instead";
@@ -354,8 +359,9 @@ Solver::Attempt MixedCg<D>::attempt(std::span<const double> b, std::span<double>
     std::copy(guess_.begin(), guess_.end(), x.begin());
     outcome = iterate(b, x, goal, most_iterations, result);
   } else if (with_grid_ && outcome == Outcome::reached && result.iterations >= fewest_for_rate) {
-    grid_.note_rate(std::log10(before / goal) / static_cast<double>(result.iterations));
+    grid_.note_rate(std::log10(first_residual_ / goal) / static_cast<double>(result.iterations));
   }
+  if (outcome == Outcome::gave_up) std::copy(guess_.begin(), guess_.end(), x.begin());
   result.ok = outcome == Outcome::reached;
   return result;
 }

@@ -1,5 +1,5 @@
 // Preconditioned conjugate gradients. On a Resistance the work is done in single precision (mixed_cg.cpp); on any other
-// System in double, on System::apply. On a projected system everything lives in the range of Pi: the operator is
+// System, and where single precision does not do, in double, on System::apply. On a projected system everything lives in the range of Pi: the operator is
 // Pi A Pi, the preconditioner Pi M^-1 Pi.
 #include <algorithm>
 #include <cmath>
@@ -113,35 +113,59 @@ class ConjugateGradients : public Solver {
   explicit ConjugateGradients(const SolverOptions& options) : Solver(options) {}
 
   void save(StateWriter& out) const override {
-    if (engine_) engine_->save(out);
+    if (mixed_) mixed_->save(out);
   }
   void load(const StateReader& in, const System& system) override {
     choose_engine(system);
-    engine_->load(in);
+    if (mixed_) mixed_->load(in);
   }
 
  private:
   void set_up() override {
     choose_engine(*system_);
-    engine_->set_up(*system_);
+    note_.clear();
+    in_double_ = mixed_ == nullptr;
+    if (in_double_) {
+      double_.set_up(*system_);
+    } else {
+      mixed_->set_up(*system_);
+    }
   }
   // Kept from one bind to the next with what it remembers, while the systems are of one kind.
   void choose_engine(const System& system) {
     const std::type_info& kind = typeid(system);
-    if (engine_ && kind_ == &kind) return;
-    engine_ = make_mixed_cg(system, options_);
-    if (!engine_) engine_ = std::make_unique<DoubleCg>();
+    if (kind_ == &kind) return;
+    mixed_ = make_mixed_cg(system, options_);
     kind_ = &kind;
   }
-  Attempt attempt(std::span<const double> b, std::span<double> x, double tolerance) override {
-    return engine_->attempt(b, x, tolerance, iterations_left_);
+  Attempt attempt(std::span<const double> b, std::span<double> x, double tolerance) override;
+  std::int64_t memory_bytes() const override {
+    return double_.memory_bytes() + (mixed_ ? mixed_->memory_bytes() : 0);
   }
-  std::int64_t memory_bytes() const override { return engine_->memory_bytes(); }
-  std::string note() const override { return engine_->note(); }
+  std::string note() const override { return note_; }
 
-  std::unique_ptr<CgEngine> engine_;
+  std::unique_ptr<CgEngine> mixed_;  // null: the system has no rows of R
+  DoubleCg double_;
   const std::type_info* kind_ = nullptr;
+  bool in_double_ = false;
+  std::string note_;
 };
+
+// The last resort: what is too badly conditioned for single precision, about 1e7, is done in double, until the next bind.
+Solver::Attempt ConjugateGradients::attempt(std::span<const double> b, std::span<double> x,
+                                            double tolerance) {
+  if (in_double_) return double_.attempt(b, x, tolerance, iterations_left_);
+  const Attempt mixed = mixed_->attempt(b, x, tolerance, iterations_left_);
+  note_ = mixed_->note();
+  if (mixed.ok || mixed.failure.empty()) return mixed;
+  note_ += (note_.empty() ? "" : "; ") +
+           ("single precision gave up (" + mixed.failure + "): double precision instead");
+  double_.set_up(*system_);
+  in_double_ = true;
+  Attempt last = double_.attempt(b, x, tolerance, iterations_left_ - mixed.iterations);
+  last.iterations += mixed.iterations;
+  return last;
+}
 
 }  // namespace
 

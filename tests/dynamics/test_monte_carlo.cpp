@@ -73,8 +73,7 @@ template <int D>
 double total_energy(Toy<D>& toy) {
   Stage<D> stage;
   toy.dynamics->evaluate(toy.particles.position, 0.0, stage);
-  double energy = 0.0;
-  for (const double u : stage.network.u) energy += u;
+  double energy = stage.network.u.sum();
   for (const Vec<D>& r : toy.particles.position) energy += toy.trap.potential_energy_at(r);
   return energy;
 }

@@ -21,9 +21,7 @@ DpdParameters transverse() {
 template <int D>
 double energy(Fluid<D>& fluid, const DpdModel<D>& model) {
   fluid.connect(model);
-  double u = 0.0;
-  for (const double edge : fluid.network.u) u += edge;
-  return u;
+  return fluid.network.u.sum();
 }
 
 template <class T>

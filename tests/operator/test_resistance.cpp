@@ -114,7 +114,7 @@ TYPED_TEST(ResistanceTest, SeveralEdgesMayJoinTheSameNodes) {
     e[static_cast<int>(k) % D] = 1.0;
     n.e[edges + k] = e;
     n.zeta_par[edges + k] = 2.0 + static_cast<double>(k);
-    n.zeta_perp[edges + k] = 0.5;
+    n.zeta_perp.each()[edges + k] = 0.5;
   }
   n.index_edges();
   expect_definition(fluid, 0.0);

@@ -28,9 +28,7 @@ double energy(const Scene<D>& scene) {
   odpd::PairNetwork<D> network;
   scene.model().write_edges(list, scene.box(), r, scene.particles(), network);
   std::vector<double> laplacian(r.size(), 0.0);
-  double u = scene.potential_energy(scene.particles(), r, laplacian);
-  for (const double edge : network.u) u += edge;
-  return u;
+  return scene.potential_energy(scene.particles(), r, laplacian) + network.u.sum();
 }
 
 template <int D>

@@ -168,7 +168,7 @@ TYPED_TEST(MultilevelCg, SurvivesAnEmptyBox) {
     for (const auto& r : support::random_points<D>({}, support::uniform_vec<D>(2.0), count, count))
       fluid.particles.add(r, 0, 0);
     fluid.connect(odpd::DpdModel<D>(1, {odpd::DpdParameters{}}));
-    for (const double shift : {1e-2, 10.0}) {
+    for (const double shift : {1e-6, 1e-2, 10.0}) {
       odpd::Resistance<D> resistance(box);
       resistance.rebuild(fluid.network, odpd::DofMap<D>(fluid.particles), fluid.particles,
                          fluid.particles.position, shift);
@@ -180,6 +180,57 @@ TYPED_TEST(MultilevelCg, SurvivesAnEmptyBox) {
       EXPECT_TRUE(report.converged) << count << " particles, shift " << shift << report.failure;
       EXPECT_LT(report.memory_bytes, 4000000);
     }
+  }
+}
+
+// The grid's operator is that of friction 10^10 times weaker: what it answers drowns everything else.
+TYPED_TEST(MultilevelCg, FallsBackToBlockJacobiAndThenTriesTheGridAgain) {
+  constexpr int D = TypeParam::D;
+  toys::RandomFluid<D> toy(1000);
+  const auto b = support::random_numbers(static_cast<std::size_t>(toy.resistance.size()), 11);
+  const auto solver = odpd::make_solver({.name = "pcg", .preconditioner = "multilevel"});
+  const auto solved = [&](double friction) {
+    for (double& zeta : toy.fluid.network.zeta_par) zeta *= friction;
+    toy.rebuild(0.0);
+    solver->bind(toy.resistance);
+    std::vector<double> x(b.size(), 0.0);
+    const SolveReport report = solver->solve(b, x);
+    EXPECT_TRUE(report.converged) << report.failure;
+    return report;
+  };
+  EXPECT_EQ(solved(1e-10).note, "");
+  const SolveReport fallen = solved(1e10);
+  EXPECT_TRUE(fallen.note.starts_with("multilevel gave up")) << fallen.note;
+  EXPECT_TRUE(fallen.note.ends_with("block-Jacobi instead")) << fallen.note;
+  EXPECT_EQ(solved(1.0).note, "") << "its operator is built anew";
+}
+
+// Particles on top of each other in a corner, held by next to nothing: the last resort of either preconditioner.
+TYPED_TEST(MultilevelCg, LeavesToDoublePrecisionWhatSinglePrecisionCannotDo) {
+  constexpr int D = TypeParam::D;
+  support::Fluid<D> fluid(40.0, true);
+  for (const auto& r : support::random_points<D>({}, support::uniform_vec<D>(2.0), 60, 60))
+    fluid.particles.add(r, 0, 0);
+  fluid.connect(odpd::DpdModel<D>(1, {odpd::DpdParameters{}}));
+  odpd::Resistance<D> resistance(fluid.box);
+  resistance.rebuild(fluid.network, odpd::DofMap<D>(fluid.particles), fluid.particles,
+                     fluid.particles.position, 1e-7);
+  for (const char* preconditioner : {"multilevel", "block-jacobi"}) {
+    const auto solver =
+        odpd::make_solver({.name = "pcg", .tolerance = 1e-8, .preconditioner = preconditioner});
+    solver->bind(resistance);
+    std::vector<double> x(static_cast<std::size_t>(resistance.size()), 0.0), r(x.size());
+    const auto b = support::random_numbers(x.size(), 5);
+    const SolveReport report = solver->solve(b, x);
+    ASSERT_TRUE(report.converged) << report.failure;
+    EXPECT_TRUE(report.note.ends_with("double precision instead")) << report.note;
+    EXPECT_LT(report.iterations, 6000);
+    resistance.apply(x, r);
+    for (std::size_t k = 0; k < r.size(); ++k) r[k] -= b[k];
+    EXPECT_LE(support::norm(r), 1.001e-8 * support::norm(b));
+    solver->bind(resistance);
+    std::fill(x.begin(), x.end(), 0.0);
+    EXPECT_EQ(solver->solve(b, x).iterations, report.iterations) << "single precision comes first";
   }
 }
 

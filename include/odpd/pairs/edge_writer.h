@@ -32,24 +32,23 @@ template <int D, class Terms>
 void write_pair_edges(const Terms& terms, double cutoff, const PairList<D>& list, const Box<D>& box,
                       std::span<const Vec<D>> positions, const Particles<D>& particles,
                       PairNetwork<D>& network) {
-  for (auto* constant : {&network.constant_k_c, &network.constant_zeta_perp, &network.constant_kT,
-                         &network.constant_f_c, &network.constant_u})
-    constant->vary();
+  for (Column* column : {&network.u, &network.k_c, &network.zeta_perp, &network.kT}) column->each();
   const auto fill = [&](PairNetwork<D>& n, std::size_t begin, std::size_t end) {
+    const auto u = n.u.each(), k_c = n.k_c.each(), zeta_perp = n.zeta_perp.each(), kT = n.kT.each();
     for (std::size_t k = begin; k < end; ++k) {
       const PairTerms t = terms(n.r[k], Site{particles.species[static_cast<std::size_t>(n.i[k])]},
                                 Site{particles.species[static_cast<std::size_t>(n.j[k])]});
-      n.u[k] = t.u;
+      u[k] = t.u;
       n.f_c[k] = t.f_c;
-      n.k_c[k] = t.k_c;
+      k_c[k] = t.k_c;
       n.zeta_par[k] = t.zeta_par;
-      n.zeta_perp[k] = t.zeta_perp;
-      n.kT[k] = t.kT;
+      zeta_perp[k] = t.zeta_perp;
+      kT[k] = t.kT;
     }
   };
   write_edge_geometry<D>(list, cutoff, box, positions, particles, fill, network);
   network.transverse = false;
-  for (const double z : network.zeta_perp) network.transverse = network.transverse || z != 0.0;
+  for (const double z : network.zeta_perp.each()) network.transverse |= z != 0.0;
 }
 
 }  // namespace odpd

@@ -4,13 +4,13 @@
 //   R = sum_edges J^T Z J,  Z = zeta_par e e^T + zeta_perp (I - e e^T),  F_B = sum_edges J^T sqrt(2 kT Z/dt) w,
 //
 // with J the map from the two velocities to the slip v_i - v_j.
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "odpd/core/vec.h"
+#include "odpd/pairs/column.h"
 
 namespace odpd {
 
@@ -32,7 +32,8 @@ struct PairNetwork {
   std::vector<std::int32_t> i, j;
   std::vector<Vec<D>> e;  ///< unit vector from j to i
   std::vector<double> r;  ///< distance
-  std::vector<double> u, f_c, k_c, zeta_par, zeta_perp, kT;
+  std::vector<double> f_c, zeta_par;
+  Column u, k_c, zeta_perp, kT;
   bool transverse = false;  ///< some zeta_perp is not zero
 
   // The edges of each particle, in fixed order: edge[start[p]] .. edge[start[p+1]-1].
@@ -55,19 +56,6 @@ struct PairNetwork {
   /// Bytes held, for reports.
   std::int64_t bytes() const;
 
-  /// A column that is the same number in many scenes is written once, and then only where it grew.
-  class ConstantColumn {
-   public:
-    void fill(std::vector<double>& column, double value);
-    /// The column is about to be written edge by edge.
-    void vary() { filled_ = 0; }
-    void cut(std::size_t size) { filled_ = std::min(filled_, size); }
-
-   private:
-    double value_ = 0.0;
-    std::size_t filled_ = 0;
-  };
-  ConstantColumn constant_k_c, constant_zeta_perp, constant_kT, constant_f_c, constant_u;
   std::vector<std::int32_t> scratch, next;  ///< of whoever writes the edges, and of the index
 };
 
