@@ -127,7 +127,7 @@ std::unique_ptr<Observer<D>> make_msd(const Config& entry, ObserverSettings sett
   std::vector<std::string> names, fallback;
   for (int c = 0; c < D; ++c) {
     names.emplace_back(1, "xyz"[c]);
-    bool flows = scene.settings().body_force[c] != 0.0 || !scene.box().is_periodic(c);
+    bool flows = scene.settings().forces_along(c) || !scene.box().is_periodic(c);
     for (const auto& wall : scene.settings().walls) flows = flows || wall.velocity[c] != 0.0;
     if (!flows) fallback.push_back(names.back());
   }

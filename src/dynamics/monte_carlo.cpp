@@ -26,6 +26,10 @@ void MonteCarlo<D>::refuse_driving(Dynamics<D>& dynamics, double time) {
     if (!particles.is_free(i) && dynamics.surroundings().known_velocity(
                                      particles.group[i], particles.position[i], time) != Vec<D>{})
       refuse("a moving wall has none: set wall.velocity to zero");
+  if (dynamics.surroundings().driving_varies())
+    refuse(
+        "a force that differs from place to place drives a flow: remove body_force.wave and "
+        "body_force.region");
   force_.assign(particles.position.size(), Vec<D>{});
   dynamics.surroundings().add_driving_forces(particles, particles.position, time, force_);
   for (int c = 0; c < D; ++c)

@@ -69,11 +69,18 @@ double Scene<D>::potential_energy(const Particles<D>& particles, std::span<const
 }
 
 template <int D>
-void Scene<D>::add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>>, double,
-                                  std::vector<Vec<D>>& force) const {
-  if (dot(settings_.body_force, settings_.body_force) == 0.0) return;
-  for (std::size_t i = 0; i < force.size(); ++i)
-    if (particles.is_free(i)) force[i] += settings_.body_force;
+void Scene<D>::add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
+                                  double, std::vector<Vec<D>>& force) const {
+  if (settings_.largest_force() == 0.0) return;
+  // A wave or opposite regions balance in an even fluid, not on these particles: what is left over would have no answer.
+  Vec<D> mean{};
+  if (settings_.force_varies() && !settings_.takes_up_force()) {
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      if (particles.is_free(i)) mean += settings_.force_at(positions[i]);
+    mean *= 1.0 / static_cast<double>(particles.free_count());
+  }
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (particles.is_free(i)) force[i] += settings_.force_at(positions[i]) - mean;
 }
 
 template <int D>

@@ -25,6 +25,8 @@ class Surroundings {
   /// Adds driving forces (body force) on particles at these positions at time t.
   virtual void add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
                                   double t, std::vector<Vec<D>>& force) const = 0;
+  /// Those forces depend on position, so they have no linear potential.
+  virtual bool driving_varies() const { return false; }
   /// Velocity at time t of a particle of `group` >= 1 at r.
   virtual Vec<D> known_velocity(std::int32_t group, const Vec<D>& r, double t) const = 0;
   /// Mirrors a free particle that left the box in a bounded direction back into it; true when it had.

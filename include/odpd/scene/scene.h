@@ -38,6 +38,7 @@ class Scene : public Surroundings<D> {
                           std::vector<double>& laplacian) const override;
   void add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
                           double t, std::vector<Vec<D>>& force) const override;
+  bool driving_varies() const override { return settings_.force_varies(); }
   Vec<D> known_velocity(std::int32_t group, const Vec<D>& r, double t) const override;
   bool confine(Vec<D>& r) const override;
 

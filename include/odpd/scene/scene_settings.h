@@ -37,6 +37,20 @@ struct WallSettings {
   double stiffness = 1000.0;
 };
 
+/// Makes the body force a wave, times sin(2 pi number r_along / L_along); number 0: it is uniform.
+struct ForceWave {
+  int along = 0;
+  std::int64_t number = 0;
+};
+
+/// A force on the free particles with from <= r_axis < to.
+template <int D>
+struct ForceRegion {
+  int axis = 0;
+  double from = 0.0, to = 0.0;  ///< coordinates (length)
+  Vec<D> force{};
+};
+
 enum class StartKind { random, lattice, file };
 
 template <int D>
@@ -53,15 +67,28 @@ struct SceneSettings {
   double mass = 0.0;               ///< of every fluid particle
   double zeta_0 = 0.0;             ///< uniform drag on every fluid particle (mass/time)
   std::vector<WallSettings<D>> walls;
-  Vec<D> body_force{};  ///< on every free particle (force)
+  Vec<D> body_force{};  ///< on every free particle, or amplitude of the wave (force)
+  ForceWave force_wave;
+  std::vector<ForceRegion<D>> force_regions;
   StartKind start = StartKind::random;
   std::string start_file;                   ///< for StartKind::file, resolved
   std::vector<Vec<D>> start_positions;      ///< contents of the start file, filled by io's caller
   std::vector<std::int32_t> start_species;  ///< one per start position
   std::int64_t relax_sweeps = 100;          ///< of overlap removal before the run
 
-  /// Something drives a flow: a body force or a moving wall.
+  /// Something drives a flow: a force or a moving wall.
   bool driven() const;
+  /// Driving force on a free particle at r: body force or wave, and regions. Where nothing takes up a net force, the scene
+  /// subtracts the mean over the free particles, which vanishes for an even fluid only.
+  Vec<D> force_at(const Vec<D>& r) const;
+  /// It depends on r.
+  bool force_varies() const { return force_wave.number > 0 || !force_regions.empty(); }
+  /// It has this component somewhere.
+  bool forces_along(int component) const;
+  /// A bound of its magnitude.
+  double largest_force() const;
+  /// A net force has an answer: something holds the fluid.
+  bool takes_up_force() const { return !walls.empty(); }
   int wall_at(int axis, bool high) const;  ///< index into walls, -1 when there is none
   /// Ends of the space between the wall surfaces (the box itself where it is periodic), and its volume.
   Vec<D> fluid_low() const;
