@@ -6,10 +6,14 @@
 
 #include "odpd/analysis/bodies.h"
 #include "odpd/analysis/density_residual.h"
+#include "odpd/analysis/divergence.h"
+#include "odpd/analysis/heat.h"
 #include "odpd/analysis/msd.h"
 #include "odpd/analysis/profile.h"
 #include "odpd/analysis/rdf.h"
+#include "odpd/analysis/stress.h"
 #include "odpd/analysis/thermo.h"
+#include "odpd/analysis/viscosity.h"
 #include "odpd/analysis/wall_force.h"
 #include "odpd/core/log.h"
 
@@ -24,11 +28,14 @@ int read_axis(const Config& config, const std::string& key, int dimension,
   return config.choice(key, names, fallback)[0] - 'x';
 }
 
-// Direction across which a profile makes sense by default: the first bounded one.
+// Direction across which a profile makes sense by default: the first bounded one, else that along which the force varies.
 template <int D>
 std::string default_axis(const Scene<D>& scene) {
   for (int c = 0; c < D; ++c)
     if (!scene.box().is_periodic(c)) return {"xyz"[c]};
+  const auto& s = scene.settings();
+  if (s.force_wave.number > 0) return {"xyz"[s.force_wave.along]};
+  if (!s.force_regions.empty()) return {"xyz"[s.force_regions[0].axis]};
   return "y";
 }
 
@@ -51,19 +58,21 @@ std::unique_ptr<Observer<D>> make_profile(const Config& entry, ObserverSettings 
   ProfileSettings p;
   p.axis = read_axis(entry, "axis", D, default_axis(scene));
   p.bins = entry.positive_integer("bins", 20);
-  const std::string fit = entry.choice("fit", {"none", "linear", "parabola"}, "none");
+  const std::string fit = entry.choice("fit", {"none", "linear", "parabola", "sine"}, "none");
   p.fit = fit == "linear"     ? ProfileFit::linear
           : fit == "parabola" ? ProfileFit::parabola
+          : fit == "sine"     ? ProfileFit::sine
                               : ProfileFit::none;
+  const ForceWave& wave = scene.settings().force_wave;
+  if (p.fit == ProfileFit::sine && (wave.number == 0 || wave.along != p.axis))
+    entry.fail("fit", "a sine needs body_force.wave along the profile's axis");
   p.component = read_axis(entry, "component", D, "x");
   // By default the fit keeps one cutoff clear of the surfaces, where walls order the fluid.
   const double margin = scene.box().is_periodic(p.axis) ? 0.0 : scene.model().cutoff();
   p.fit_from = entry.number("fit_from", scene.fluid_low()[p.axis] + margin);
   p.fit_to = entry.number("fit_to", scene.fluid_high()[p.axis] - margin);
   if (!(p.fit_from < p.fit_to)) entry.fail("fit_from", "must be less than fit_to");
-  const std::int64_t needed = p.fit == ProfileFit::linear     ? 3
-                              : p.fit == ProfileFit::parabola ? 4
-                                                              : 0;
+  const std::int64_t needed = p.fit == ProfileFit::none ? 0 : p.fit == ProfileFit::parabola ? 4 : 3;
   if (bins_between(p, scene) < needed)
     entry.fail(
         "fit",
@@ -75,20 +84,39 @@ std::unique_ptr<Observer<D>> make_profile(const Config& entry, ObserverSettings 
 }
 
 template <int D>
-std::unique_ptr<Observer<D>> make_residual(const Config& entry, ObserverSettings settings,
-                                           const Scene<D>& scene) {
+typename Grid<D>::Counts read_cells(const Config& entry, const Scene<D>& scene) {
   const Vec<D> extent = scene.fluid_high() - scene.fluid_low();
   std::vector<double> fallback;
   for (int c = 0; c < D; ++c) fallback.push_back(std::max(1.0, std::round(extent[c])));
   const std::vector<double> given = entry.numbers("bins", fallback);
   if (given.size() != D) entry.fail("bins", fmt::format("{} counts are needed", D));
-  std::array<std::int64_t, static_cast<std::size_t>(D)> bins{};
+  typename Grid<D>::Counts bins{};
   for (std::size_t c = 0; c < given.size(); ++c) {
     bins[c] = static_cast<std::int64_t>(given[c]);
     if (bins[c] < 1 || static_cast<double>(bins[c]) != given[c])
       entry.fail("bins", "counts must be whole and positive");
   }
-  return std::make_unique<DensityResidual<D>>(std::move(settings), bins, scene);
+  return bins;
+}
+
+template <int D>
+std::unique_ptr<Observer<D>> make_divergence(const Config& entry, ObserverSettings settings,
+                                             const Scene<D>& scene) {
+  const auto cells = read_cells(entry, scene);
+  for (int c = 0; c < D; ++c)
+    if (cells[static_cast<std::size_t>(c)] < 3)
+      entry.fail("bins", "differences need at least 3 cells in every direction");
+  return std::make_unique<Divergence<D>>(std::move(settings), cells, scene);
+}
+
+template <int D>
+std::unique_ptr<Observer<D>> make_heat(const Config& entry, ObserverSettings settings,
+                                       const Scene<D>& scene) {
+  if (scene.settings().mass > 0.0)
+    entry.fail("kind", "the balance of heat is that of a massless fluid: fluid.mass must be 0");
+  if (scene.settings().zeta_0 > 0.0)
+    entry.fail("kind", "the balance of heat leaves out the drag: fluid.zeta_0 must be 0");
+  return std::make_unique<Heat<D>>(std::move(settings), scene);
 }
 
 template <int D>
@@ -128,7 +156,7 @@ std::unique_ptr<Observer<D>> make_msd(const Config& entry, ObserverSettings sett
   std::vector<std::string> names, fallback;
   for (int c = 0; c < D; ++c) {
     names.emplace_back(1, "xyz"[c]);
-    bool flows = scene.settings().body_force[c] != 0.0 || !scene.box().is_periodic(c);
+    bool flows = scene.settings().forces_along(c) || !scene.box().is_periodic(c);
     for (const auto& wall : scene.settings().walls) flows = flows || wall.velocity[c] != 0.0;
     if (!flows) fallback.push_back(names.back());
   }
@@ -166,6 +194,43 @@ std::unique_ptr<Observer<D>> make_bodies(const Config& entry, ObserverSettings s
   return std::make_unique<Bodies<D>>(std::move(settings), b, scene, clock.dt);
 }
 
+template <int D>
+std::unique_ptr<Observer<D>> make_stress(const Config& entry, ObserverSettings settings,
+                                         const Scene<D>& scene) {
+  StressBins bins;
+  bins.bins = entry.integer("bins", 0);
+  if (bins.bins < 0) entry.fail("bins", "must be zero (none) or positive");
+  if (bins.bins > 0) bins.axis = read_axis(entry, "axis", D, default_axis(scene));
+  return std::make_unique<Stress<D>>(std::move(settings), bins, scene);
+}
+
+template <int D>
+std::unique_ptr<Observer<D>> make_viscosity(const Config& entry, ObserverSettings settings,
+                                            const Scene<D>& scene, const Clock& clock) {
+  const ViscosityScene kind = viscosity_scene(scene);
+  if (kind.kind == ViscosityScene::Kind::none)
+    entry.fail("kind",
+               "nothing in this scene shows a viscosity: move a wall, drive the fluid along its "
+               "walls or by body_force.wave, or leave a fully periodic fluid of kT > 0 at rest");
+  ViscositySettings v;
+  if (kind.has_profile()) {
+    v.bins = entry.positive_integer("bins", 20);
+    const ProfileSettings p{
+        .axis = kind.axis, .bins = v.bins, .fit_from = kind.from, .fit_to = kind.to};
+    if (bins_between(p, scene) < 4)
+      entry.fail("bins", fmt::format("at least 4 bins with centres between {} and {} are needed: "
+                                     "use more, or a wider stream",
+                                     kind.from, kind.to));
+    return std::make_unique<Viscosity<D>>(std::move(settings), v, scene, clock.dt);
+  }
+  v.window = entry.positive("window", v.window);
+  v.fit_from = entry.non_negative("fit_from", 0.4 * v.window);
+  if (v.fit_from >= v.window) entry.fail("fit_from", "must be less than window");
+  if (settings.every != 1)
+    entry.fail("every", "must be 1: the stress is integrated over every step");
+  return std::make_unique<Viscosity<D>>(std::move(settings), v, scene, clock.dt);
+}
+
 std::int64_t default_every(const std::string& kind, const Clock& clock) {
   if (kind == "thermo") return 5;
   if (kind == "rdf") return 20;
@@ -188,7 +253,13 @@ std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::strin
   settings.series = entry.boolean("series", false);
   if (kind == "thermo") return std::make_unique<Thermo<D>>(std::move(settings), scene);
   if (kind == "profile") return make_profile(entry, std::move(settings), scene);
-  if (kind == "density-residual") return make_residual(entry, std::move(settings), scene);
+  if (kind == "density-residual")
+    return std::make_unique<DensityResidual<D>>(std::move(settings), read_cells(entry, scene),
+                                                scene);
+  if (kind == "divergence") return make_divergence(entry, std::move(settings), scene);
+  if (kind == "heat") return make_heat(entry, std::move(settings), scene);
+  if (kind == "stress") return make_stress(entry, std::move(settings), scene);
+  if (kind == "viscosity") return make_viscosity(entry, std::move(settings), scene, clock);
   if (kind == "rdf") return make_rdf(entry, std::move(settings), scene);
   if (kind == "wall-force") {
     if (scene.settings().walls.empty())
@@ -205,8 +276,10 @@ template <int D>
 std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
                                                          const Scene<D>& scene, const Clock& clock,
                                                          bool steps_are_time) {
-  const std::vector<std::string> kinds{"thermo",     "profile", "density-residual", "rdf", "msd",
-                                       "wall-force", "bodies"};
+  const std::vector<std::string> kinds{"thermo", "profile",   "density-residual", "rdf",
+                                       "msd",    "heat",      "wall-force",       "stress",
+                                       "bodies", "viscosity", "divergence"};
+  const std::vector<std::string> of_motion{"msd", "viscosity", "heat", "divergence"};
   std::vector<std::unique_ptr<Observer<D>>> observers;
   const auto have = [&](const std::string& kind) {
     return std::any_of(observers.begin(), observers.end(),
@@ -223,11 +296,12 @@ std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
       if (observers[k]->settings().name == observers.back()->settings().name)
         entry.fail("name", fmt::format("two observers are named '{}': give each a name of its own",
                                        observers[k]->settings().name));
-    if (newest.kind == "msd" && !steps_are_time) {
-      log_warning(
-          fmt::format("observer '{}' is left out: sweeps of monte-carlo are no time, so "
-                      "displacements give no diffusion",
-                      newest.name));
+    if (std::find(of_motion.begin(), of_motion.end(), newest.kind) != of_motion.end() &&
+        !steps_are_time) {
+      log_warning(fmt::format(
+          "observer '{}' is left out: sweeps of monte-carlo are no time and particles have no "
+          "velocity, which '{}' measures by",
+          newest.name, newest.kind));
       observers.pop_back();
     }
   }

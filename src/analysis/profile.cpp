@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "odpd/analysis/least_squares.h"
 #include "odpd/analysis/thermo.h"
@@ -116,6 +117,37 @@ void Profile<D>::add_results(Results& results) const {
   results.charts.emplace_back(name + "_density", std::move(density));
 }
 
+// What the fit is a polynomial in, averaged over a bin of this width.
+template <int D>
+double Profile<D>::abscissa(double x, double bin_width) const {
+  if (profile_.fit != ProfileFit::sine) return x - 0.5 * (low_ + high_);
+  const double k = 2.0 * std::numbers::pi *
+                   static_cast<double>(scene_.settings().force_wave.number) / (high_ - low_);
+  const double half = 0.5 * k * bin_width;
+  return std::sin(k * x) * (half > 0.0 ? std::sin(half) / half : 1.0);
+}
+
+// Driving force along the component where it is the same in all fitted bins, else 0.
+template <int D>
+double Profile<D>::fitted_force() const {
+  const SceneSettings<D>& s = scene_.settings();
+  for (const auto& region : s.force_regions)
+    if (region.axis != profile_.axis) return 0.0;
+  const double half = 0.499 * (high_ - low_) / static_cast<double>(profile_.bins);
+  std::optional<double> force;
+  for (std::size_t b = 0; b < static_cast<std::size_t>(profile_.bins); ++b) {
+    if (centre(b) < profile_.fit_from || centre(b) > profile_.fit_to) continue;
+    for (const double x : {centre(b) - half, centre(b) + half}) {
+      Vec<D> r{};
+      r[profile_.axis] = x;
+      const double here = s.force_at(r)[profile_.component];
+      if (force && here != *force) return 0.0;
+      force = here;
+    }
+  }
+  return force.value_or(0.0);
+}
+
 template <int D>
 std::optional<typename Profile<D>::FittedBins> Profile<D>::fit_bins() const {
   const auto component = static_cast<std::size_t>(profile_.component) + 1;
@@ -126,13 +158,13 @@ std::optional<typename Profile<D>::FittedBins> Profile<D>::fit_bins() const {
     const std::vector<BlockAverage::RatioTerm> term{{1.0, column(b, component), column(b, 0)}};
     const double e = average_.ratio_error(term);
     if (!(e > 0.0)) return std::nullopt;
-    x.push_back(centre(b) - 0.5 * (low_ + high_));
+    x.push_back(abscissa(centre(b), (high_ - low_) / static_cast<double>(profile_.bins)));
     y.push_back(average_.ratio(column(b, component), column(b, 0)));
     error.push_back(e);
     fitted.bins.push_back(term[0]);
     fitted.density += average_.mean(column(b, 0));
   }
-  fitted.fit = fit_polynomial(profile_.fit == ProfileFit::linear ? 1 : 2, x, y, error);
+  fitted.fit = fit_polynomial(profile_.fit == ProfileFit::parabola ? 2 : 1, x, y, error);
   fitted.density *=
       static_cast<double>(profile_.bins) / scene_.fluid_volume() / static_cast<double>(x.size());
   return fitted;
@@ -157,8 +189,10 @@ void Profile<D>::add_fit(Results& results, Chart& chart) const {
   const double nan = std::nan("");
   results.scalars.push_back({name + ".reduced_chi_square", fitted->fit.reduced_chi_square, nan});
   results.scalars.push_back({name + ".bulk_density", fitted->density, nan});
-  const bool linear = profile_.fit == ProfileFit::linear;
-  Curve line{.title = linear ? "linear fit" : "parabola fit",
+  const bool linear = profile_.fit == ProfileFit::linear, sine = profile_.fit == ProfileFit::sine;
+  Curve line{.title = linear ? "linear fit"
+                      : sine ? "sine fit"
+                             : "parabola fit",
              .x = {},
              .y = {},
              .error = {},
@@ -166,7 +200,7 @@ void Profile<D>::add_fit(Results& results, Chart& chart) const {
              .points = false};
   for (int k = 0; k <= 50; ++k) {
     line.x.push_back(low_ + (high_ - low_) * k / 50.0);
-    line.y.push_back(fitted->fit(line.x.back() - 0.5 * (low_ + high_)));
+    line.y.push_back(fitted->fit(abscissa(line.x.back(), 0.0)));
   }
   chart.curves.push_back(std::move(line));
   const int below = scene_.settings().wall_at(profile_.axis, false);
@@ -177,6 +211,8 @@ void Profile<D>::add_fit(Results& results, Chart& chart) const {
                        scene_.known_velocity(above + 1, 0.0)[profile_.component]};
   if (linear) {
     add_linear(*fitted, walls, results, chart);
+  } else if (sine) {
+    add_sine(*fitted, results);
   } else {
     add_parabola(*fitted, walls, results);
   }
@@ -215,15 +251,29 @@ void Profile<D>::add_parabola(const FittedBins& fitted, const std::optional<Wall
   const std::vector<double>& c = fitted.fit.coefficient;
   const double error = coefficient_error(fitted, 2);
   results.scalars.push_back({name + ".curvature", c[2], error});
-  const double f = scene_.settings().body_force[profile_.component];
-  if (!walls || f == 0.0) return;
+  const double f = fitted_force();
+  if (f == 0.0) return;
   const double viscosity = fitted.density * f / (-2.0 * c[2]);
   results.scalars.push_back({name + ".viscosity", viscosity, std::abs(viscosity / c[2]) * error});
+  if (!walls) return;
   const double top = c[0] - c[1] * c[1] / (4.0 * c[2]);
   results.scalars.push_back({name + ".maximum", top, coefficient_error(fitted, 0)});
   const double half_width = std::sqrt((0.5 * (walls->low + walls->high) - top) / c[2]);
   results.scalars.push_back(
       {name + ".slip_length", half_width - 0.5 * (high_ - low_), std::nan("")});
+}
+
+template <int D>
+void Profile<D>::add_sine(const FittedBins& fitted, Results& results) const {
+  const std::string& name = this->settings().name;
+  const double amplitude = fitted.fit.coefficient[1], error = coefficient_error(fitted, 1);
+  const double length = (high_ - low_) / (2.0 * std::numbers::pi *
+                                          static_cast<double>(scene_.settings().force_wave.number));
+  const double viscosity = fitted.density * scene_.settings().body_force[profile_.component] *
+                           length * length / amplitude;
+  results.scalars.push_back({name + ".amplitude", amplitude, error});
+  results.scalars.push_back(
+      {name + ".viscosity", viscosity, std::abs(viscosity / amplitude) * error});
 }
 
 template <int D>

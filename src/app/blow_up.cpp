@@ -66,6 +66,9 @@ double BlowUpWatch<D>::fluid_depth() const {
   double depth = 0.0;
   for (const auto& wall : scene_.settings().walls)
     depth = std::max(depth, scene_.fluid_high()[wall.axis] - scene_.fluid_low()[wall.axis]);
+  if (depth > 0.0 || !scene_.settings().force_varies()) return depth;
+  // Without walls a force that varies drives streams as wide as the box or less.
+  for (int c = 0; c < D; ++c) depth = std::max(depth, scene_.box().size[c]);
   return depth;
 }
 
@@ -118,8 +121,8 @@ std::string BlowUpWatch<D>::judge_temperatures(const Stage<D>& stage, const Pair
   for (const double x : laplacian) squares += x * x;
   const double contacts = 2.0 * static_cast<double>(stage.network.size()) / n;
   const double drag =
-      contacts * gamma * flow_slip_ + std::sqrt(dot(s.body_force, s.body_force)) * fluid_depth() *
-                                          std::pow(n / scene_.fluid_volume(), 1.0 / D);
+      contacts * gamma * flow_slip_ +
+      s.largest_force() * fluid_depth() * std::pow(n / scene_.fluid_volume(), 1.0 / D);
   const double force = fixed_sum(force_squared), curvature = fixed_sum(laplacian);
   const double scale = kT * (std::max(curvature, 0.0) + 3.0 * std::sqrt(squares)) + n * drag * drag;
   const bool sound = force <= multiple_ * scale;
@@ -151,8 +154,7 @@ std::string BlowUpWatch<D>::judge(const Stage<D>& stage, double dt) {
     for (const DpdParameters& p : s.pairs)
       start_energy_ = std::max(start_energy_, random_energy<D>(p, n / scene_.fluid_volume()));
   }
-  const double bound = multiple_ * (start_energy_ + D * kT +
-                                    std::sqrt(dot(s.body_force, s.body_force)) * fluid_depth());
+  const double bound = multiple_ * (start_energy_ + D * kT + s.largest_force() * fluid_depth());
   // Without any energy in the scene there is no scale to judge it by.
   if (bound > 0.0 && energy > bound)
     return fmt::format(

@@ -48,8 +48,8 @@ std::string modelled(const Simulation<D>& simulation) {
   }
   out += line(!scene.settings().walls.empty(), "walls",
               fmt::format("{} [[wall]]", scene.settings().walls.size()));
-  const Vec<D>& f = scene.settings().body_force;
-  out += line(dot(f, f) > 0.0, "body force", dot(f, f) > 0.0 ? "[body_force]" : "none given");
+  const bool forced = scene.settings().largest_force() > 0.0;
+  out += line(forced, "body force", forced ? "[body_force]" : "none given");
   return out;
 }
 

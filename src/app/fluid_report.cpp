@@ -99,6 +99,7 @@ std::string limits(const Scene<D>& scene) {
 }  // namespace
 
 const Scalar* measured_viscosity(const Results& results) {
+  if (const Scalar* chosen = results.find("viscosity")) return chosen;
   for (const Scalar& scalar : results.scalars)
     if (scalar.name.ends_with(".viscosity")) return &scalar;
   return nullptr;

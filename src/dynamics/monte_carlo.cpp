@@ -35,6 +35,10 @@ void MonteCarlo<D>::refuse_driving(Dynamics<D>& dynamics, double time) {
     if (load.force != Vec<D>{} || load.torque != Vec<D>{})
       refuse("a body that is pushed has none here: set its force and torque to zero");
   }
+  if (dynamics.surroundings().driving_varies())
+    refuse(
+        "a force that differs from place to place drives a flow: remove body_force.wave and "
+        "body_force.region");
   force_.assign(particles.position.size(), Vec<D>{});
   dynamics.surroundings().add_driving_forces(particles, particles.position, time, force_);
   for (int c = 0; c < D; ++c)

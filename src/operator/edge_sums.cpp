@@ -43,17 +43,6 @@ void add_edges(const PairNetwork<D>& network, bool opposite, const Value& value,
       });
 }
 
-// Friction on i of edge k.
-template <int D>
-Vec<D> friction_of(const PairNetwork<D>& network, std::size_t k, std::span<const Vec<D>> velocity) {
-  const Vec<D> slip = velocity[static_cast<std::size_t>(network.i[k])] -
-                      velocity[static_cast<std::size_t>(network.j[k])];
-  const double along = dot(slip, network.e[k]);
-  Vec<D> force = (network.zeta_perp[k] - network.zeta_par[k]) * along * network.e[k];
-  if (network.transverse) force -= network.zeta_perp[k] * slip;
-  return force;
-}
-
 }  // namespace
 
 template <int D>

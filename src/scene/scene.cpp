@@ -74,13 +74,22 @@ double Scene<D>::potential_energy(const Particles<D>& particles, std::span<const
 }
 
 template <int D>
-void Scene<D>::add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>>, double,
-                                  std::vector<Vec<D>>& force) const {
-  if (settings_.body_force == Vec<D>{} && counter_force_ == Vec<D>{}) return;
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    if (!particles.is_known(i)) force[i] += settings_.body_force;
-    if (particles.is_free(i)) force[i] += counter_force_;
+void Scene<D>::add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
+                                  double t, std::vector<Vec<D>>& force) const {
+  Vec<D> net{};
+  for (std::size_t b = 0; b < particles.bodies.size(); ++b) net += body_load(b, t).force;
+  if (settings_.largest_force() == 0.0 && net == Vec<D>{}) return;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (particles.is_known(i)) continue;
+    const Vec<D> f = settings_.force_at(positions[i]);
+    force[i] += f;
+    net += f;
   }
+  if (settings_.held()) return;
+  // Nothing takes up a net force (of bodies that are pushed, of a wave on these particles), so it would have no answer.
+  const Vec<D> share = 1.0 / static_cast<double>(particles.free_count()) * net;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (particles.is_free(i)) force[i] -= share;
 }
 
 template <int D>

@@ -5,33 +5,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "odpd/scene/drive_keys.h"
 #include "odpd/scene/physical_keys.h"
+#include "odpd/scene/vector_key.h"
 
 namespace odpd {
 
 namespace {
 
 template <int D>
-Vec<D> read_vector(const Config& config, const std::string& key,
-                   const std::vector<double>& values) {
-  if (values.size() != D)
-    config.fail(key, fmt::format("{} components are needed in {} dimensions, there are {}", D, D,
-                                 values.size()));
-  Vec<D> v;
-  for (int c = 0; c < D; ++c) v[c] = values[static_cast<std::size_t>(c)];
-  return v;
-}
-
-template <int D>
-Vec<D> read_optional_vector(const Config& config, const std::string& key) {
-  return read_vector<D>(config, key, config.numbers(key, std::vector<double>(D, 0.0)));
-}
-
-template <int D>
 Box<D> read_box(const Config& config) {
   Box<D> box;
-  box.size = read_vector<D>(config, "size", config.numbers("size"));
+  box.size = read_vector<D>(config, "size");
   for (int c = 0; c < D; ++c)
     if (!(box.size[c] > 0.0)) config.fail("size", "every edge of the box must be positive");
   const std::vector<bool> periodic = config.booleans("periodic");
@@ -288,18 +275,43 @@ std::int32_t species_index(const std::vector<SpeciesSettings>& species, const Co
 template <int D>
 bool SceneSettings<D>::driven() const {
   const auto moves = [](const WallSettings<D>& w) { return dot(w.velocity, w.velocity) > 0.0; };
-  const auto driven = [](const BodySettings<D>& b) {
+  const auto pushed = [](const BodySettings<D>& b) {
     return b.velocity.velocity != Vec<D>{} || b.velocity.angular != Vec<D>{} ||
            b.load.force != Vec<D>{} || b.load.torque != Vec<D>{};
   };
-  return dot(body_force, body_force) > 0.0 || std::any_of(walls.begin(), walls.end(), moves) ||
-         std::any_of(bodies.begin(), bodies.end(), driven);
+  return largest_force() > 0.0 || std::any_of(walls.begin(), walls.end(), moves) ||
+         std::any_of(bodies.begin(), bodies.end(), pushed);
 }
 
 template <int D>
 bool SceneSettings<D>::held() const {
   return !walls.empty() || std::any_of(bodies.begin(), bodies.end(),
                                        [](const auto& b) { return b.motion != BodyMotion::free; });
+}
+
+template <int D>
+Vec<D> SceneSettings<D>::force_at(const Vec<D>& r) const {
+  Vec<D> force = body_force;
+  if (force_wave.number > 0)
+    force *= std::sin(2.0 * std::numbers::pi * static_cast<double>(force_wave.number) *
+                      r[force_wave.along] / box.size[force_wave.along]);
+  for (const auto& region : force_regions)
+    if (r[region.axis] >= region.from && r[region.axis] < region.to) force += region.force;
+  return force;
+}
+
+template <int D>
+bool SceneSettings<D>::forces_along(int component) const {
+  return body_force[component] != 0.0 ||
+         std::any_of(force_regions.begin(), force_regions.end(),
+                     [&](const ForceRegion<D>& region) { return region.force[component] != 0.0; });
+}
+
+template <int D>
+double SceneSettings<D>::largest_force() const {
+  double force = norm(body_force);
+  for (const auto& region : force_regions) force += norm(region.force);
+  return force;
 }
 
 template <int D>
@@ -346,13 +358,7 @@ SceneSettings<D> read_scene_settings(const Config& config) {
                                                 entry.text("species", scene.species[0].name));
   }
   read_fluid(config, scene);
-  const Config body_force = config.table("body_force");
-  scene.body_force = read_optional_vector<D>(body_force, "force");
-  if (!scene.held() && dot(scene.body_force, scene.body_force) > 0.0)
-    body_force.fail(
-        "force",
-        "in a fully periodic box nothing balances a net force, so a massless fluid has no answer "
-        "and one with mass accelerates for ever: add walls or fixed bodies, or remove the force");
+  read_drive(config, scene);
   read_drag(config.table("fluid"), scene);
   return scene;
 }

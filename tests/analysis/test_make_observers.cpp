@@ -54,11 +54,12 @@ TEST_F(MakeObservers, WithoutTimeThereIsNoMsd) {
 
 TEST_F(MakeObservers, EveryKindCanBeMade) {
   std::string text;
-  for (const char* kind : {"thermo", "profile", "density-residual", "rdf", "msd"}) {
+  for (const char* kind :
+       {"thermo", "profile", "density-residual", "rdf", "msd", "stress", "divergence", "heat"}) {
     text += std::string("[[observe]]\nkind = \"") + kind + "\"\nevery = 2\n";
   }
   const auto observers = make(text);
-  ASSERT_EQ(observers.size(), 5u);
+  ASSERT_EQ(observers.size(), 8u);
   for (const auto& observer : observers) {
     EXPECT_EQ(observer->settings().name, observer->settings().kind);
     EXPECT_FALSE(observer->series_columns().empty());
@@ -75,7 +76,7 @@ TEST_F(MakeObservers, TellWhenTheyAreDue) {
 }
 
 TEST_F(MakeObservers, RefuseWhatTheyDoNotKnow) {
-  refuse("kind = \"viscosity\"\n", {"kind", "profile", "rdf"});
+  refuse("kind = \"viscosities\"\n", {"kind", "profile", "rdf", "viscosity"});
   refuse("name = \"x\"\n", {"kind"});
   refuse("kind = \"thermo\"\nevery = 0\n", {"every"});
   refuse("kind = \"thermo\"\nbins = 3\n", {"bins"});
@@ -87,8 +88,34 @@ TEST_F(MakeObservers, RefuseWhatTheyDoNotKnow) {
   refuse("kind = \"profile\"\naxis = \"z\"\n", {"axis"});
   refuse("kind = \"profile\"\nfit = \"cubic\"\n", {"fit", "parabola"});
   refuse("kind = \"profile\"\nfit_from = 3.0\nfit_to = 2.0\n", {"fit_from", "fit_to"});
+  refuse("kind = \"profile\"\nfit = \"sine\"\n", {"fit", "body_force.wave"});
+  refuse("kind = \"stress\"\nbins = -1\n", {"bins"});
+  refuse("kind = \"stress\"\naxis = \"x\"\n", {"axis"});
+  refuse("kind = \"viscosity\"\nwindow = 0.1\nfit_from = 0.2\n", {"fit_from", "window"});
+  refuse("kind = \"viscosity\"\nevery = 2\n", {"every", "every step"});
+  refuse("kind = \"viscosity\"\nbins = 20\n", {"bins"});
+  refuse("kind = \"divergence\"\nbins = [2.0, 5.0]\n", {"bins", "at least 3"});
   refuse("kind = \"density-residual\"\nbins = [5.0]\n", {"bins", "2 counts"});
   refuse("kind = \"density-residual\"\nbins = [5.0, 2.5]\n", {"bins", "whole"});
+}
+
+TEST_F(MakeObservers, RefuseWhatTheSceneHasNot) {
+  const auto refused = [](odpd::SceneSettings<2> s, const std::string& kind,
+                          std::initializer_list<const char*> parts) {
+    const Scene<2> other(std::move(s));
+    const Config config = Config::from_text("[[observe]]\nkind = \"" + kind + "\"\n", "case.toml");
+    expect_error<ConfigError>([&] { odpd::make_observers(config, other, odpd::Clock{.dt = 0.02}); },
+                              parts);
+  };
+  const auto s = records::periodic<2>(5.0, {{{1.0, 1.0}}, {{3.0, 3.0}}});
+  auto cold = s, heavy = s, dragged = s;
+  cold.pairs[0].kT = 0.0;
+  heavy.mass = 1.0;
+  dragged.zeta_0 = 0.1;
+  refused(cold, "viscosity", {"kind", "move a wall", "body_force.wave"});
+  refused(dragged, "viscosity", {"kind"});
+  refused(heavy, "heat", {"kind", "fluid.mass"});
+  refused(dragged, "heat", {"kind", "fluid.zeta_0"});
 }
 
 TEST_F(MakeObservers, RefuseTwoOfOneName) {

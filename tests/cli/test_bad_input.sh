@@ -132,6 +132,12 @@ expect_error 1 run channel --set wall.0.thickness=3.0 -- '--set wall.0.thickness
 expect_error 1 run channel --set 'wall.0.velocity=[0.0, 1.0]' -- '--set wall.0.velocity'
 expect_error 1 run channel --set 'wall.0.layers=[]' -- '--set wall.0.layers'
 expect_error 1 run box --set 'body_force.force=[1.0, 0.0]' -- '--set body_force.force' periodic walls
+expect_error 1 run box --set 'body_force.wave={along="y"}' -- '--set body_force.wave' amplitude
+expect_error 1 run box --set 'body_force.force=[1.0, 0.0]' --set 'body_force.wave={along="x"}' -- body_force.force 'along the wave'
+expect_error 1 run channel --set 'body_force.force=[1.0, 0.0]' --set 'body_force.wave={along="y"}' -- body_force.wave.along bounded
+expect_error 1 run box --set 'body_force.region=[{axis="y", from=0.0, to=2.0, force=[1.0, 0.0]}]' -- body_force.region 'net force'
+expect_error 1 run box --set 'body_force.region=[{axis="y", from=0.0, to=9.0, force=[1.0, 0.0]}]' -- to 'outside the box'
+expect_error 1 run box --set 'body_force.force=[1.0, 0.0]' --set 'body_force.wave={along="y"}' --set integrator.name=monte-carlo -- monte-carlo body_force.wave
 expect_error 1 run box --set 'species=[{name="A", fraction=0.5}]' -- fraction
 
 # --- solvers ---

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "cases.h"
 #include "odpd/scene/scene.h"
 #include "support/dimensions.h"
@@ -150,6 +153,51 @@ TEST(Scene, LargestTemperatureOfAnyPair) {
   s.pairs.assign(4, s.pairs[0]);
   s.pairs[3].kT = 2.5;
   EXPECT_EQ(Scene<2>(s).largest_kT(), 2.5);
+}
+
+// On a finite set of particles neither a wave nor opposite regions add up to nothing; in a box without walls the rest is
+// taken from everyone, between walls it stays.
+TYPED_TEST(SceneTest, ForcesThatVary) {
+  constexpr int D = TypeParam::D;
+  SceneSettings<D> s;
+  s.box.size = support::uniform_vec<D>(6.0);
+  s.box.periodic.fill(true);
+  s.start = StartKind::file;
+  s.start_positions = support::random_points<D>({}, s.box.size, 11, 4);
+  s.relax_sweeps = 0;
+  s.body_force[0] = 0.5;
+  s.force_wave = {.along = 1, .number = 3};
+  Vec<D> push{};
+  push[D - 1] = 0.25;
+  s.force_regions = {{.axis = 0, .from = 0.0, .to = 3.0, .force = push},
+                     {.axis = 0, .from = 3.0, .to = 6.0, .force = -1.0 * push}};
+  const Scene<D> scene(s);
+  const auto& particles = scene.particles();
+  std::vector<Vec<D>> force(particles.position.size());
+  scene.add_driving_forces(particles, particles.position, 0.0, force);
+  Vec<D> expected{}, sum{};
+  for (const Vec<D>& r : particles.position) {
+    expected[0] += 0.5 * std::sin(std::numbers::pi * r[1]) / 11.0;
+    expected[D - 1] += (r[0] < 3.0 ? 0.25 : -0.25) / 11.0;
+  }
+  EXPECT_GT(norm(expected), 0.01) << "the test needs something to subtract";
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    const Vec<D>& r = particles.position[i];
+    EXPECT_NEAR(force[i][0], 0.5 * std::sin(std::numbers::pi * r[1]) - expected[0], 1e-14);
+    EXPECT_NEAR(force[i][D - 1], (r[0] < 3.0 ? 0.25 : -0.25) - expected[D - 1], 1e-14);
+    sum += force[i];
+  }
+  EXPECT_LT(norm(sum), 1e-14);
+
+  SceneSettings<D> held = duct<D>();
+  held.force_regions = {{.axis = 0, .from = 3.5, .to = 6.0, .force = push}};
+  const Scene<D> between(held);
+  std::vector<Vec<D>> on(between.particles().position.size());
+  between.add_driving_forces(between.particles(), between.particles().position, 0.0, on);
+  const std::size_t last = on.size() - 1;
+  EXPECT_EQ(norm(on[0]), 0.0) << "of the wall";
+  EXPECT_EQ(on[last - 1], held.body_force);
+  EXPECT_EQ(on[last], held.body_force + push);
 }
 
 }  // namespace

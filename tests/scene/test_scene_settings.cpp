@@ -206,6 +206,48 @@ TEST(SceneSettings, RefusesAForceThatNothingBalances) {
   EXPECT_EQ(settings<2>(channel, {"body_force.force=[0.1, 0.0]"}).body_force[0], 0.1);
 }
 
+TEST(SceneSettings, ReadsAWaveAndRegions) {
+  const auto wave = settings<3>(
+      periodic, {"body_force.force=[0.1, 0.0, 0.0]", "body_force.wave={along=\"y\", number=2}"});
+  EXPECT_EQ(wave.force_wave.along, 1);
+  EXPECT_EQ(wave.force_wave.number, 2);
+  EXPECT_TRUE(wave.driven() && wave.force_varies() && wave.forces_along(0));
+  EXPECT_FALSE(wave.forces_along(1));
+  EXPECT_NEAR(wave.force_at({{1.0, 0.5, 2.0}})[0], 0.1, 1e-15);  // a quarter of the period 2
+  const std::string half = "[[body_force.region]]\naxis = \"y\"\n";
+  const std::string up = half + "from = 0.0\nto = 2.0\nforce = [0.3, 0.0, 0.0]\n";
+  const auto two =
+      settings<3>(periodic + up + half + "from = 2.0\nto = 4.0\nforce = [-0.3, 0.0, 0.0]\n", {});
+  EXPECT_TRUE(two.driven() && two.force_varies() && two.forces_along(0));
+  EXPECT_EQ(two.force_at({{1.0, 1.99, 2.0}})[0], 0.3);
+  EXPECT_EQ(two.force_at({{1.0, 2.0, 2.0}})[0], -0.3);
+  expect_error<ConfigError>([&] { settings<3>(periodic + up, {}); },
+                            {"body_force.region", "net force"});
+}
+
+TEST(SceneSettings, RefusesBadWavesAndRegions) {
+  const auto refuse_3d = [](const std::string& text, const Overrides& overrides,
+                            std::initializer_list<const char*> parts) {
+    expect_error<ConfigError>([&] { settings<3>(text, overrides); }, parts);
+  };
+  const std::string force = "body_force.force=[0.1, 0.0, 0.0]", wave = "body_force.wave=";
+  refuse_3d(periodic, {wave + "{along=\"y\"}"}, {"body_force.wave", "amplitude"});
+  refuse_3d(periodic, {force, wave + "{along=\"x\"}"}, {"body_force.force", "along the wave"});
+  refuse_3d(periodic, {force, wave + "{along=\"y\", number=0}"}, {"body_force.wave.number"});
+  refuse_3d(periodic, {force, wave + "{along=\"w\"}"}, {"body_force.wave.along"});
+  expect_error<ConfigError>(
+      [&] {
+        settings<2>(channel, {"body_force.force=[0.1, 0.0]", wave + "{along=\"y\"}"});
+      },
+      {"body_force.wave.along", "bounded"});
+  const auto region = [](const std::string& keys) {
+    return "body_force.region=[{axis=\"y\", force=[0.1, 0.0, 0.0], " + keys + "}]";
+  };
+  refuse_3d(periodic, {region("from=2.0, to=1.0")}, {"to", "larger than from"});
+  refuse_3d(periodic, {region("from=2.0, to=4.1")}, {"to", "outside the box"});
+  refuse_3d(periodic, {region("from=-1.0, to=1.0")}, {"from"});
+}
+
 TEST(SceneSettings, RefusesBadSpecies) {
   const auto with = [](const std::string& species) {
     expect_error<ConfigError>([&] { settings<3>(periodic + species); }, {"species"});

@@ -4,9 +4,11 @@
 //   paper   (1/N_b) sqrt(sum_b (n_b - n)^2)      (Phan-Thien et al. 2016, eq. 49)
 //   thesis  sqrt(sum_b (n_b - n)^2 / N_b)        (Nguyen 2021, eq. 3.41)
 //
-// Both contain sampling noise that falls with the averaging time: compare runs of the same length, and subtract the
-// value at rest.
+// Both contain sampling noise that falls with the averaging time. `noise` is what the standard errors of the n_b (block averaging)
+// make of the thesis' number alone, sqrt(sum_b error_b^2 / N_b), and excess = sqrt(max(thesis^2 - noise^2, 0)) is what is left: 0 for
+// an even fluid however short the run. What walls do to the fluid at rest stays in it: subtract a run at rest of the same length.
 #include "odpd/analysis/block_average.h"
+#include "odpd/analysis/grid.h"
 #include "odpd/analysis/observer.h"
 
 namespace odpd {
@@ -15,8 +17,7 @@ template <int D>
 class DensityResidual : public Observer<D> {
  public:
   /// bins: D counts.
-  DensityResidual(ObserverSettings settings,
-                  std::array<std::int64_t, static_cast<std::size_t>(D)> bins,
+  DensityResidual(ObserverSettings settings, const typename Grid<D>::Counts& bins,
                   const Scene<D>& scene);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
@@ -31,9 +32,7 @@ class DensityResidual : public Observer<D> {
  private:
   double thesis_residual(std::span<const double> counts) const;
 
-  std::array<std::int64_t, static_cast<std::size_t>(D)> bins_;
-  const Scene<D>& scene_;
-  double bin_volume_;
+  Grid<D> grid_;
   BlockAverage average_;
   std::vector<double> newest_;
 };

@@ -5,9 +5,13 @@
 //   thermo            energy per particle, pressure, configurational temperature
 //   profile           density, velocity and configurational temperature across bins, with a fit
 //   density-residual  unevenness of the time-averaged density on a grid
+//   divergence        of the time-averaged flow on a grid
 //   rdf               radial distribution functions per pair of species
 //   wall-force        force per area on each wall, shear stress between two
 //   bodies            force, torque, motion and diffusion of obstacles and rigid bodies, the fluid around them
+//   stress            stress tensor, overall and by bins, and the parts of the pressure
+//   viscosity         by every route that the scene allows
+//   heat              produced heat, power put in, change of energy
 //   msd               mean-square displacement and self-diffusion per species
 #include <memory>
 #include <string>
@@ -57,8 +61,8 @@ class Observer {
 };
 
 /// The observers of a case: its [[observe]] entries, and `thermo` and `msd` with their defaults when it names none of
-/// that kind. Without `steps_are_time` (Monte Carlo) there is no `msd`: the default one is not made, a named one is left
-/// out with a warning. `scene` must outlive them. Throws ConfigError for unknown kinds and bad keys.
+/// that kind. Without `steps_are_time` (Monte Carlo) there is no `msd` (nor others that need motion): the default one is not made,
+/// a named one is left out with a warning. `scene` must outlive them. Throws ConfigError for unknown kinds and bad keys.
 template <int D>
 std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
                                                          const Scene<D>& scene, const Clock& clock,

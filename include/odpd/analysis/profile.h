@@ -8,8 +8,10 @@
 // and a least-squares fit of one velocity component over the bins between `fit_from` and `fit_to`:
 //   linear    u = u_0 + slope x; with two walls also slope_ratio = slope H/(U_high - U_low) and the slip length
 //             b = ((U_high - U_low)/slope - H)/2 with H the distance between the wall surfaces
-//   parabola  u = c_0 + c_1 x + c_2 x^2; with a body force f also the viscosity n f/(-2 c_2), n over the fitted bins,
-//             and the slip length from where the parabola reaches the walls' velocity
+//   parabola  u = c_0 + c_1 x + c_2 x^2; with a force f, the same in all fitted bins, also the viscosity n f/(-2 c_2), n over
+//             these bins, and between walls the slip length from where the parabola reaches the walls' velocity
+//   sine      u = c_0 + A <sin(2 pi k x/L)>, averaged over each bin, for the wave of the driving force: with its amplitude F the
+//             viscosity n F L^2/(4 pi^2 k^2 A), that of this wavelength
 #include <optional>
 
 #include "odpd/analysis/block_average.h"
@@ -18,7 +20,7 @@
 
 namespace odpd {
 
-enum class ProfileFit { none, linear, parabola };
+enum class ProfileFit { none, linear, parabola, sine };
 
 struct ProfileSettings {
   int axis = 1;
@@ -58,12 +60,15 @@ class Profile : public Observer<D> {
     double low = 0.0, high = 0.0;
   };
   std::optional<FittedBins> fit_bins() const;
+  double abscissa(double x, double width) const;
+  double fitted_force() const;
   double coefficient_error(const FittedBins& fitted, std::size_t power) const;
   void add_fit(Results& results, Chart& chart) const;
   void add_linear(const FittedBins& fitted, const std::optional<WallSpeeds>& walls,
                   Results& results, Chart& chart) const;
   void add_parabola(const FittedBins& fitted, const std::optional<WallSpeeds>& walls,
                     Results& results) const;
+  void add_sine(const FittedBins& fitted, Results& results) const;
 
   ProfileSettings profile_;
   const Scene<D>& scene_;

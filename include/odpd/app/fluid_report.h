@@ -18,7 +18,7 @@ std::string fluid_text(const Scene<D>& scene, const Results& results);
 template <int D>
 JsonObject fluid_json(const Scene<D>& scene, const Results& results);
 
-/// The first measured observable named `<observer>.viscosity`, or nullptr.
+/// `viscosity` of the observer of that kind, else the first observable named `<observer>.viscosity`, else nullptr.
 const Scalar* measured_viscosity(const Results& results);
 
 }  // namespace odpd

@@ -25,6 +25,8 @@ class Surroundings {
   /// Adds driving forces (body force) on the particles that move, at these positions at time t.
   virtual void add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
                                   double t, std::vector<Vec<D>>& force) const = 0;
+  /// Those forces depend on position, so they have no linear potential.
+  virtual bool driving_varies() const { return false; }
   /// Velocity at time t of wall `group` >= 1.
   virtual Vec<D> known_velocity(std::int32_t group, double t) const = 0;
   /// Motion at time t of a body that has a known one.

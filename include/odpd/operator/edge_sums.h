@@ -9,6 +9,19 @@
 
 namespace odpd {
 
+/// Friction on i of edge k, -Z (v_i - v_j), with the physical zeta. Everything that needs the friction of one pair (forces,
+/// stress, wall force, heat) takes it from here.
+template <int D>
+inline Vec<D> friction_of(const PairNetwork<D>& network, std::size_t k,
+                          std::span<const Vec<D>> velocity) {
+  const Vec<D> slip = velocity[static_cast<std::size_t>(network.i[k])] -
+                      velocity[static_cast<std::size_t>(network.j[k])];
+  const double along = dot(slip, network.e[k]);
+  Vec<D> force = (network.zeta_perp[k] - network.zeta_par[k]) * along * network.e[k];
+  if (network.transverse) force -= network.zeta_perp[k] * slip;
+  return force;
+}
+
 /// force[p] += sum over edges of p of (+-) edge_force, with + where p is i; edge_force: on i, one per edge.
 template <int D>
 void add_edge_forces(const PairNetwork<D>& network, std::span<const Vec<D>> edge_force,

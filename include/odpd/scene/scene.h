@@ -43,6 +43,7 @@ class Scene : public Surroundings<D> {
                           std::vector<double>& laplacian) const override;
   void add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
                           double t, std::vector<Vec<D>>& force) const override;
+  bool driving_varies() const override { return settings_.force_varies(); }
   Vec<D> known_velocity(std::int32_t group, double t) const override;
   RigidMotion<D> known_motion(std::size_t body, double t) const override;
   RigidLoad<D> body_load(std::size_t body, double t) const override;
@@ -56,8 +57,6 @@ class Scene : public Surroundings<D> {
   std::unique_ptr<PairModel<D>> model_;
   Particles<D> particles_;
   std::vector<std::size_t> body_kind_;  // of each body: its [[body]]
-  Vec<D>
-      counter_force_{};  // on each free particle, balances the forces on bodies that nothing else holds
 };
 
 }  // namespace odpd

@@ -38,6 +38,20 @@ struct WallSettings {
   double stiffness = 1000.0;
 };
 
+/// Makes the body force a wave, times sin(2 pi number r_along / L_along); number 0: it is uniform.
+struct ForceWave {
+  int along = 0;
+  std::int64_t number = 0;
+};
+
+/// A force on the free particles with from <= r_axis < to.
+template <int D>
+struct ForceRegion {
+  int axis = 0;
+  double from = 0.0, to = 0.0;  ///< coordinates (length)
+  Vec<D> force{};
+};
+
 enum class StartKind { random, lattice, file };
 
 template <int D>
@@ -55,17 +69,28 @@ struct SceneSettings {
   double zeta_0 = 0.0;             ///< uniform drag on every fluid particle (mass/time)
   std::vector<WallSettings<D>> walls;
   std::vector<BodySettings<D>> bodies;
-  Vec<D> body_force{};  ///< on every particle that moves (force)
+  Vec<D> body_force{};  ///< on every particle that moves, or amplitude of the wave (force)
+  ForceWave force_wave;
+  std::vector<ForceRegion<D>> force_regions;
   StartKind start = StartKind::random;
   std::string start_file;                   ///< for StartKind::file, resolved
   std::vector<Vec<D>> start_positions;      ///< contents of the start file, filled by io's caller
   std::vector<std::int32_t> start_species;  ///< one per start position
   std::int64_t relax_sweeps = 100;          ///< of overlap removal before the run
 
-  /// Something drives a flow: a body force, a moving wall, a body that is moved or pushed.
+  /// Something drives a flow: a force, a moving wall, a body that is moved or pushed.
   bool driven() const;
-  /// Walls, or bodies of known motion, take up momentum.
+  /// Walls, or bodies of known motion, hold the fluid and take up a net force.
   bool held() const;
+  /// Driving force on a particle at r: body force or wave, and regions. Where nothing takes up a net force, the scene
+  /// balances it on the free particles (Scene::add_driving_forces).
+  Vec<D> force_at(const Vec<D>& r) const;
+  /// It depends on r.
+  bool force_varies() const { return force_wave.number > 0 || !force_regions.empty(); }
+  /// It has this component somewhere.
+  bool forces_along(int component) const;
+  /// A bound of its magnitude.
+  double largest_force() const;
   int wall_at(int axis, bool high) const;  ///< index into walls, -1 when there is none
   /// Ends of the space between the wall surfaces (the box itself where it is periodic), and its volume.
   Vec<D> fluid_low() const;

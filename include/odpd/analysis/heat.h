@@ -1,0 +1,44 @@
+#pragma once
+// Energy balance of a massless fluid, per time and per volume between the wall surfaces, each stage of a step for itself and then
+// their mean:
+//
+//   produced     sum_edges -(F_D + F_B) . (v_i - v_j) = v . (R v - xi): what friction heats, less what the noise gives back
+//   walls        power of whoever moves them, -sum_{i in wall} v_i . (F_C + F_D + F_B)_i
+//   body_force   sum_free v . F_drive
+//   energy_rate  dU/dt = -sum v . F_C, wall potentials included
+//
+//   produced + energy_rate = walls + body_force, in every stage, to the tolerance of the solver
+//
+// residual: the largest miss of that over stages and samples, over sum_edges -F_D . (v_i - v_j) (v . R v alone holds the noise's power,
+// 2 kT/dt per degree of freedom). `extrapolated` and `implicit` solve another balance in a step: theirs does not close.
+#include "odpd/analysis/block_average.h"
+#include "odpd/analysis/observer.h"
+
+namespace odpd {
+
+template <int D>
+class Heat : public Observer<D> {
+ public:
+  Heat(ObserverSettings settings, const Scene<D>& scene)
+      : Observer<D>(std::move(settings)), scene_(scene), average_(4) {}
+  void measure(const Clock& clock, const Particles<D>& particles,
+               const StepRecord<D>& record) override;
+  void add_results(Results& results) const override;
+  std::vector<std::string> series_columns() const override {
+    return {"produced", "walls", "body_force", "energy_rate"};
+  }
+  std::vector<double> series_row() const override { return newest_; }
+  void save(StateWriter& out) const override;
+  void load(const StateReader& in) override;
+
+ private:
+  void add_stage(const Particles<D>& particles, const Stage<D>& stage, const StepRecord<D>& record,
+                 double weight);
+
+  const Scene<D>& scene_;
+  double worst_ = 0.0;
+  BlockAverage average_;  // in the order of the series
+  std::vector<double> newest_;
+};
+
+}  // namespace odpd

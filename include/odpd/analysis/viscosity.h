@@ -1,0 +1,65 @@
+#pragma once
+// Viscosity by every route that the scene allows, each from observers that say how they measure:
+//
+//   <name>.wall     shear stress on two facing walls / slope of the linear velocity profile      (wall_force.h, profile.h)
+//   <name>.stress   shear stress between the walls / that slope                                  (stress.h)
+//   <name>.profile  curvature of the profile under a body force, n f/(-2 c_2)                    (profile.h)
+//   <name>.sine     amplitude under a sinusoidal force, n F L^2/(4 pi^2 k^2 A), k waves in L     (profile.h)
+//   <name>.helfand  growth of the integrated stress in a fully periodic box at rest              (helfand.h)
+//
+// `viscosity` (`<name>.viscosity` under another name) is the one of smallest standard error; a note says which. Errors of quotients
+// take numerator and denominator as independent.
+#include <memory>
+#include <optional>
+
+#include "odpd/analysis/helfand.h"
+#include "odpd/analysis/profile.h"
+#include "odpd/analysis/stress.h"
+#include "odpd/analysis/wall_force.h"
+
+namespace odpd {
+
+/// How a scene shows its viscosity.
+struct ViscosityScene {
+  enum class Kind { none, sheared, parabola, sine, at_rest } kind = Kind::none;
+  int axis = 1;                 ///< of the profile
+  int component = 0;            ///< of the velocity
+  double from = 0.0, to = 0.0;  ///< coordinates of the fit
+  bool needs_every_step() const { return kind == Kind::at_rest; }
+  bool has_profile() const { return kind != Kind::none && kind != Kind::at_rest; }
+};
+
+/// The first that applies: facing walls that move differently, a sinusoidal force, a uniform force between walls or in a region, a
+/// fully periodic box at rest with kT > 0.
+template <int D>
+ViscosityScene viscosity_scene(const Scene<D>& scene);
+
+struct ViscositySettings {
+  std::int64_t bins = 20;               ///< of the profile
+  double window = 0.5, fit_from = 0.2;  ///< of helfand (time)
+};
+
+template <int D>
+class Viscosity : public Observer<D> {
+ public:
+  Viscosity(ObserverSettings settings, const ViscositySettings& viscosity, const Scene<D>& scene,
+            double dt);
+  void measure(const Clock& clock, const Particles<D>& particles,
+               const StepRecord<D>& record) override;
+  void add_results(Results& results) const override;
+  std::vector<std::string> series_columns() const override;
+  std::vector<double> series_row() const override;
+  void save(StateWriter& out) const override;
+  void load(const StateReader& in) override;
+
+ private:
+  std::vector<Scalar> routes(Results& results) const;
+
+  ViscosityScene kind_;
+  const Scene<D>& scene_;
+  std::vector<std::unique_ptr<Observer<D>>>
+      parts_;  // profile, wall-force, stress: what the routes need
+  std::optional<Helfand> helfand_;
+};
+
+}  // namespace odpd

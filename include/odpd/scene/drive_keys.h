@@ -1,0 +1,13 @@
+#pragma once
+// [body_force] of a case file: a uniform force, or a sinusoidal one, and forces of regions.
+#include "odpd/core/config.h"
+#include "odpd/scene/scene_settings.h"
+
+namespace odpd {
+
+/// Fills body_force, force_wave and force_regions; needs box and walls. Throws ConfigError for values out of range, and
+/// for a net force that nothing takes up.
+template <int D>
+void read_drive(const Config& config, SceneSettings<D>& scene);
+
+}  // namespace odpd

@@ -1,0 +1,282 @@
+#include "odpd/analysis/viscosity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace odpd {
+
+namespace {
+
+// A component's state within that of another.
+class PrefixedWriter : public StateWriter {
+ public:
+  PrefixedWriter(StateWriter& out, std::string prefix) : out_(out), prefix_(std::move(prefix)) {}
+  void write(const std::string& name, const std::vector<double>& values) override {
+    out_.write(prefix_ + name, values);
+  }
+  void write(const std::string& name, const std::vector<std::int64_t>& values) override {
+    out_.write(prefix_ + name, values);
+  }
+  void write_text(const std::string& name, const std::string& text) override {
+    out_.write_text(prefix_ + name, text);
+  }
+
+ private:
+  StateWriter& out_;
+  std::string prefix_;
+};
+
+class PrefixedReader : public StateReader {
+ public:
+  PrefixedReader(const StateReader& in, std::string prefix) : in_(in), prefix_(std::move(prefix)) {}
+  bool has(const std::string& name) const override { return in_.has(prefix_ + name); }
+  std::vector<double> read_doubles(const std::string& name) const override {
+    return in_.read_doubles(prefix_ + name);
+  }
+  std::vector<std::int64_t> read_integers(const std::string& name) const override {
+    return in_.read_integers(prefix_ + name);
+  }
+  std::string read_text(const std::string& name) const override {
+    return in_.read_text(prefix_ + name);
+  }
+
+ private:
+  const StateReader& in_;
+  std::string prefix_;
+};
+
+// Two walls that face each other across `axis`.
+template <int D>
+bool facing_walls(const SceneSettings<D>& s, int axis) {
+  return s.wall_at(axis, false) >= 0 && s.wall_at(axis, true) >= 0;
+}
+
+template <int D>
+bool sheared_across(const SceneSettings<D>& s, ViscosityScene& v) {
+  for (v.axis = 0; v.axis < D; ++v.axis) {
+    if (!facing_walls(s, v.axis)) continue;
+    const auto& low = s.walls[static_cast<std::size_t>(s.wall_at(v.axis, false))];
+    const auto& high = s.walls[static_cast<std::size_t>(s.wall_at(v.axis, true))];
+    for (v.component = 0; v.component < D; ++v.component)
+      if (low.velocity[v.component] != high.velocity[v.component]) return true;
+  }
+  return false;
+}
+
+template <int D>
+int direction_of(const Vec<D>& force) {
+  int c = 0;
+  while (c + 1 < D && force[c] == 0.0) ++c;
+  return c;
+}
+
+// Walls with a uniform force along them, or else the first region with a force across its axis.
+template <int D>
+bool pushed(const SceneSettings<D>& s, ViscosityScene& v) {
+  if (!s.force_varies() && s.largest_force() > 0.0) {
+    v.component = direction_of(s.body_force);
+    for (v.axis = 0; v.axis < D; ++v.axis)
+      if (v.axis != v.component && facing_walls(s, v.axis)) return true;
+    return false;
+  }
+  for (const auto& region : s.force_regions) {
+    v.axis = region.axis;
+    v.component = direction_of(region.force);
+    v.from = region.from;
+    v.to = region.to;
+    if (v.component != v.axis && region.force[v.component] != 0.0) return true;
+  }
+  return false;
+}
+
+Scalar quotient(std::string name, const Scalar* above, const Scalar* below) {
+  if (above == nullptr || below == nullptr || below->mean == 0.0)
+    return {std::move(name), std::nan(""), std::nan("")};
+  const double value = above->mean / below->mean;
+  return {std::move(name), value,
+          std::abs(value) *
+              std::hypot(above->standard_error / above->mean, below->standard_error / below->mean)};
+}
+
+}  // namespace
+
+template <int D>
+ViscosityScene viscosity_scene(const Scene<D>& scene) {
+  using Kind = ViscosityScene::Kind;
+  const SceneSettings<D>& s = scene.settings();
+  ViscosityScene v;
+  if (sheared_across(s, v)) {
+    v.kind = Kind::sheared;
+  } else if (s.force_wave.number > 0) {
+    v.kind = Kind::sine;
+    v.axis = s.force_wave.along;
+    v.component = direction_of(s.body_force);
+    v.from = scene.fluid_low()[v.axis];
+    v.to = scene.fluid_high()[v.axis];
+    return v;
+  } else if (pushed(s, v)) {
+    v.kind = Kind::parabola;
+  } else if (!s.driven() && s.box.periodic_directions() == D && scene.largest_kT() > 0.0 &&
+             scene.conserves_momentum()) {
+    v.kind = Kind::at_rest;
+  }
+  // One cutoff clear of the surfaces, where walls order the fluid, or of where the force changes.
+  if (v.to == v.from) {
+    v.axis = std::min(v.axis, D - 1);
+    v.from = scene.fluid_low()[v.axis];
+    v.to = scene.fluid_high()[v.axis];
+  }
+  v.from += scene.model().cutoff();
+  v.to -= scene.model().cutoff();
+  return v;
+}
+
+template <int D>
+Viscosity<D>::Viscosity(ObserverSettings settings, const ViscositySettings& viscosity,
+                        const Scene<D>& scene, double dt)
+    : Observer<D>(std::move(settings)), kind_(viscosity_scene(scene)), scene_(scene) {
+  using Kind = ViscosityScene::Kind;
+  const std::int64_t every = this->settings().every;
+  if (kind_.has_profile()) {
+    ProfileSettings p{.axis = kind_.axis, .bins = viscosity.bins, .component = kind_.component};
+    p.fit = kind_.kind == Kind::sheared ? ProfileFit::linear
+            : kind_.kind == Kind::sine  ? ProfileFit::sine
+                                        : ProfileFit::parabola;
+    p.fit_from = kind_.from;
+    p.fit_to = kind_.to;
+    parts_.push_back(std::make_unique<Profile<D>>(
+        ObserverSettings{.kind = "profile", .name = "profile", .every = every}, p, scene));
+  }
+  if (kind_.kind == Kind::sheared) {
+    parts_.push_back(std::make_unique<WallForce<D>>(
+        ObserverSettings{.kind = "wall-force", .name = "wall", .every = every}, scene));
+    parts_.push_back(std::make_unique<Stress<D>>(
+        ObserverSettings{.kind = "stress", .name = "stress", .every = every}, StressBins{}, scene));
+  }
+  if (kind_.kind == Kind::at_rest)
+    helfand_.emplace(Helfand::Settings{.window = viscosity.window,
+                                       .fit_from = viscosity.fit_from,
+                                       .dt = dt,
+                                       .steps_per_lag = std::max<std::int64_t>(
+                                           1, std::llround(viscosity.window / (50 * dt))),
+                                       .volume = scene.fluid_volume(),
+                                       .kT = scene.largest_kT()},
+                     static_cast<std::size_t>(D * (D - 1)));
+}
+
+template <int D>
+void Viscosity<D>::measure(const Clock& clock, const Particles<D>& particles,
+                           const StepRecord<D>& record) {
+  for (auto& part : parts_) part->measure(clock, particles, record);
+  if (!helfand_) return;
+  const std::vector<double> stress = stress_of(scene_, particles, record, StressBins{});
+  const auto total = [&](std::size_t a, std::size_t b) {
+    double sum = 0.0;
+    for (std::size_t part = 0; part < stress_parts; ++part) sum += stress[(part * D + a) * D + b];
+    return sum;
+  };
+  std::vector<double> shear;
+  for (std::size_t a = 0; a < D; ++a)
+    for (std::size_t b = a + 1; b < D; ++b) {
+      shear.push_back(0.5 * (total(a, b) + total(b, a)));
+      shear.push_back(0.5 * (total(a, a) - total(b, b)));
+    }
+  helfand_->add(shear);
+}
+
+template <int D>
+std::vector<Scalar> Viscosity<D>::routes(Results& results) const {
+  const std::string& name = this->settings().name;
+  if (helfand_) {
+    if (helfand_->samples() > 0) {
+      results.tables.emplace_back(name, helfand_->table());
+      results.charts.emplace_back(name, helfand_->chart());
+    }
+    return {helfand_->viscosity(name + ".helfand")};
+  }
+  Results parts;
+  for (const auto& part : parts_) part->add_results(parts);
+  results.notes.insert(results.notes.end(), parts.notes.begin(), parts.notes.end());
+  if (kind_.kind != ViscosityScene::Kind::sheared) {
+    const Scalar* scalar = parts.find("profile.viscosity");
+    const bool sine = kind_.kind == ViscosityScene::Kind::sine;
+    const std::string route = name + (sine ? ".sine" : ".profile");
+    if (scalar == nullptr) return {{route, std::nan(""), std::nan("")}};
+    return {{route, scalar->mean, scalar->standard_error}};
+  }
+  const Scalar* slope = parts.find("profile.slope");
+  if (slope != nullptr)
+    results.scalars.push_back({name + ".shear_rate", slope->mean, slope->standard_error});
+  const char axis = "xyz"[kind_.axis], component = "xyz"[kind_.component];
+  return {
+      quotient(name + ".wall", parts.find(fmt::format("wall.shear_stress.{}", component)), slope),
+      quotient(name + ".stress", parts.find(fmt::format("stress.{}{}", axis, component)), slope)};
+}
+
+template <int D>
+void Viscosity<D>::add_results(Results& results) const {
+  const std::vector<Scalar> all = routes(results);
+  const std::string& name = this->settings().name;
+  Scalar best{name == "viscosity" ? name : name + ".viscosity", std::nan(""), std::nan("")};
+  std::string route;
+  for (const Scalar& scalar : all) {
+    results.scalars.push_back(scalar);
+    const bool better =
+        std::isnan(best.standard_error) || scalar.standard_error < best.standard_error;
+    if (std::isnan(scalar.mean) || !better) continue;
+    best.mean = scalar.mean;
+    best.standard_error = scalar.standard_error;
+    route = scalar.name;
+  }
+  if (!route.empty())
+    results.notes.push_back(
+        fmt::format("{} is {}, the route of smallest standard error", best.name, route));
+  results.scalars.push_back(std::move(best));
+}
+
+template <int D>
+std::vector<std::string> Viscosity<D>::series_columns() const {
+  std::vector<std::string> columns;
+  for (const auto& part : parts_)
+    for (const std::string& column : part->series_columns())
+      columns.push_back(part->settings().name + "_" + column);
+  if (helfand_)
+    for (std::size_t k = 0; k < helfand_->integral().size(); ++k)
+      columns.push_back(fmt::format("integral_{}", k));
+  return columns;
+}
+
+template <int D>
+std::vector<double> Viscosity<D>::series_row() const {
+  if (helfand_) return helfand_->integral();
+  std::vector<double> row;
+  for (const auto& part : parts_) {
+    const std::vector<double> values = part->series_row();
+    row.insert(row.end(), values.begin(), values.end());
+  }
+  return row;
+}
+
+template <int D>
+void Viscosity<D>::save(StateWriter& out) const {
+  for (const auto& part : parts_) {
+    PrefixedWriter prefixed(out, part->settings().name + "/");
+    part->save(prefixed);
+  }
+  if (helfand_) helfand_->save(out);
+}
+
+template <int D>
+void Viscosity<D>::load(const StateReader& in) {
+  for (auto& part : parts_) part->load(PrefixedReader(in, part->settings().name + "/"));
+  if (helfand_) helfand_->load(in);
+}
+
+template ViscosityScene viscosity_scene<2>(const Scene<2>&);
+template ViscosityScene viscosity_scene<3>(const Scene<3>&);
+template class Viscosity<2>;
+template class Viscosity<3>;
+
+}  // namespace odpd
