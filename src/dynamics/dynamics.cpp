@@ -165,6 +165,12 @@ auto Dynamics<D>::spring(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
 }
 
 template <int D>
+auto Dynamics<D>::bond_spring(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
+  const PhaseTimer timer(phases_, Phase::assembly);
+  return resisted(stage, dofs(), q, add_bond_springs<D>);
+}
+
+template <int D>
 auto Dynamics<D>::total_force(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
   Unknowns f = force(stage);
   const Unknowns drag = friction(stage, q);
@@ -177,7 +183,8 @@ template <int D>
 const System& Dynamics<D>::assemble(const Stage<D>& stage, const StepWeights& weights) {
   const PhaseTimer timer(phases_, Phase::assembly);
   resistance_.rebuild(stage.network, dofs(), particles_, stage.position, stage.arms,
-                      weights.inertia + settings_.zeta_0, weights.stiffness_time);
+                      weights.inertia + settings_.zeta_0, weights.stiffness_time,
+                      weights.bond_time);
   if (weights.stiffness_time > 0.0)
     for (std::size_t k = 0; k < stage.network.k_c.size(); ++k)
       if (stage.network.k_c[k] < 0.0) ++statistics_.clamped;

@@ -26,7 +26,7 @@ const StepRecord<D>& Extrapolated<D>::step(Dynamics<D>& dynamics, const Clock& c
       for (std::size_t k = 0; k < q.size(); ++k) load[k] += stiffness_time * spring[k];
     }
   }
-  dynamics.solve(record.start, load, {inertia, stiffness_time}, q);
+  dynamics.solve(record.start, load, {inertia, stiffness_time, stiffness_time}, q);
 
   const std::vector<double> drag = dynamics.friction(record.start, q);
   this->finish(dynamics, clock, q);

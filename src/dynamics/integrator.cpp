@@ -124,6 +124,9 @@ IntegratorSettings read_integrator(const Config& config) {
     settings.theta = config.positive("theta", settings.theta);
     if (settings.theta > 1.0) config.fail("theta", "must be above 0 and at most 1");
   }
+  const bool two_stages = settings.name == "trapezoidal" || settings.name == "midpoint";
+  if ((two_stages || any) && config.has("implicit_bonds"))
+    settings.implicit_bonds = config.boolean("implicit_bonds");
   if (settings.name == "setd" || (any && config.has("order"))) {
     const std::int64_t order = config.positive_integer("order", settings.order);
     if (order > 2) config.fail("order", "must be 1 or 2");
@@ -161,8 +164,8 @@ std::string bodies_objection(const std::string& name) {
 template <int D>
 std::unique_ptr<Integrator<D>> make_integrator(const IntegratorSettings& settings) {
   const std::string& name = settings.name;
-  if (name == "trapezoidal") return std::make_unique<Trapezoidal<D>>();
-  if (name == "midpoint") return std::make_unique<Midpoint<D>>();
+  if (name == "trapezoidal") return std::make_unique<Trapezoidal<D>>(settings.implicit_bonds);
+  if (name == "midpoint") return std::make_unique<Midpoint<D>>(settings.implicit_bonds);
   if (name == "extrapolated") return std::make_unique<Extrapolated<D>>();
   if (name == "implicit") return std::make_unique<Implicit<D>>(settings.theta);
   if (name == "euler") return std::make_unique<Euler<D>>();

@@ -9,7 +9,8 @@ namespace odpd {
 template <int D>
 LocalEnergy<D>::LocalEnergy(const Box<D>& box, const PairModel<D>& model,
                             const Surroundings<D>& surroundings, const Particles<D>& particles)
-    : model_(model),
+    : box_(box),
+      model_(model),
       surroundings_(surroundings),
       particles_(particles),
       grid_(box, model.cutoff(), particles.position),
@@ -63,7 +64,7 @@ double LocalEnergy<D>::at(std::size_t i, const Vec<D>& r) {
     if (j != i && !inside)
       energy += model_.pair(std::sqrt(other.r2), site, Site{particles_.species[j]}).u;
   }
-  return energy;
+  return energy + model_.bonded_energy(i, r, box_, particles_);
 }
 
 template <int D>

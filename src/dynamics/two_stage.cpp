@@ -2,12 +2,25 @@
 
 namespace odpd {
 
+// dt/2 K* q + (c - 1/2) dt K q, what the second stage makes up for the implicit bonds of both.
+template <int D>
+void TwoStage<D>::add_bond_terms(Dynamics<D>& dynamics, double dt, const std::vector<double>& q,
+                                 std::vector<double>& load) const {
+  const auto& record = this->record_;
+  const std::vector<double> ahead = dynamics.bond_spring(record.corrector, q);
+  for (std::size_t k = 0; k < load.size(); ++k) load[k] += 0.5 * dt * ahead[k];
+  if (reach_ == 0.5) return;
+  const std::vector<double> here = dynamics.bond_spring(record.start, q);
+  for (std::size_t k = 0; k < load.size(); ++k) load[k] += (reach_ - 0.5) * dt * here[k];
+}
+
 template <int D>
 const StepRecord<D>& TwoStage<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   auto& record = this->record_;
   this->begin(dynamics, clock);
   record.start_weight = start_weight_;
-  const StepWeights weights{dynamics.inertia(clock.dt), 0.0};
+  const bool implicit_bonds = implicit_bonds_ && record.start.network.bonds > 0;
+  const StepWeights weights{dynamics.inertia(clock.dt), 0.0, implicit_bonds ? 0.5 * clock.dt : 0.0};
   std::vector<double> q = dynamics.end_velocity(record.start);
   std::vector<double> impulse =
       dynamics.draw_noise(record.start, clock.step, clock.dt, record.edge_noise);
@@ -26,6 +39,7 @@ const StepRecord<D>& TwoStage<D>::step(Dynamics<D>& dynamics, const Clock& clock
   load = dynamics.force(record.corrector);
   // The noise is the stored vector, never drawn again or projected with the edges of r*.
   for (std::size_t k = 0; k < load.size(); ++k) load[k] += impulse[k];
+  if (implicit_bonds) add_bond_terms(dynamics, clock.dt, q, load);
   // The first answer is the guess of the second solve.
   dynamics.solve(record.corrector, load, weights, q);
 

@@ -9,6 +9,22 @@ namespace odpd {
 
 namespace {
 
+// The part of the bonds, which are few.
+template <int D, class Value, class Sum>
+void add_bonds(const PairNetwork<D>& network, bool opposite, const Value& value,
+               std::vector<Sum>& sum) {
+  for (auto k = static_cast<std::size_t>(network.pairs()); k < network.i.size(); ++k) {
+    const Sum v = value(k);
+    sum[static_cast<std::size_t>(network.i[k])] += v;
+    Sum& other = sum[static_cast<std::size_t>(network.j[k])];
+    if (opposite) {
+      other -= v;
+    } else {
+      other += v;
+    }
+  }
+}
+
 // sum[p] += value(k) for the edges k of p that have it as i; those that have it as j add it, or subtract it if `opposite`.
 template <int D, class Value, class Sum>
 void add_edges(const PairNetwork<D>& network, bool opposite, const Value& value,
@@ -41,8 +57,16 @@ void add_edges(const PairNetwork<D>& network, bool opposite, const Value& value,
         for (std::size_t k = begin; k < end; ++k) s += value(k);
         sum[p] = s;
       });
+  add_bonds(network, opposite, value, sum);
 }
 
+// Force on i of the stiffness of edge k.
+template <int D>
+Vec<D> spring_of(const PairNetwork<D>& network, std::size_t k, std::span<const Vec<D>> velocity) {
+  const Vec<D> slip = velocity[static_cast<std::size_t>(network.i[k])] -
+                      velocity[static_cast<std::size_t>(network.j[k])];
+  return -std::max(network.k_c[k], 0.0) * dot(slip, network.e[k]) * network.e[k];
+}
 }  // namespace
 
 template <int D>
@@ -80,12 +104,15 @@ void add_known_friction(const PairNetwork<D>& network, std::span<const std::int3
 template <int D>
 void add_spring_forces(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
                        std::vector<Vec<D>>& force) {
-  const auto spring = [&](std::size_t k) {
-    const Vec<D> slip = velocity[static_cast<std::size_t>(network.i[k])] -
-                        velocity[static_cast<std::size_t>(network.j[k])];
-    return -std::max(network.k_c[k], 0.0) * dot(slip, network.e[k]) * network.e[k];
-  };
-  add_edges(network, true, spring, force);
+  add_edges(
+      network, true, [&](std::size_t k) { return spring_of(network, k, velocity); }, force);
+}
+
+template <int D>
+void add_bond_springs(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
+                      std::vector<Vec<D>>& force) {
+  add_bonds(
+      network, true, [&](std::size_t k) { return spring_of(network, k, velocity); }, force);
 }
 
 template <int D>
@@ -126,6 +153,8 @@ void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian
                                       std::span<const Vec<D>>, std::vector<Vec<D>>&);            \
   template void add_spring_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,             \
                                      std::vector<Vec<D>>&);                                      \
+  template void add_bond_springs<D>(const PairNetwork<D>&, std::span<const Vec<D>>,              \
+                                    std::vector<Vec<D>>&);                                       \
   template void add_friction_blocks<D>(                                                          \
       const PairNetwork<D>&, std::vector<std::array<double, static_cast<std::size_t>(D * D)>>&); \
   template void add_laplacian<D>(const PairNetwork<D>&, std::vector<double>&);

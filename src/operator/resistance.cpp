@@ -53,10 +53,11 @@ std::size_t other_end(const PairNetwork<D>& network, std::int32_t edge, std::int
 template <int D>
 void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs,
                             const Particles<D>& particles, std::span<const Vec<D>> positions,
-                            double shift, double stiffness_time) {
+                            double shift, double stiffness_time, double bond_time) {
   nodes_ = dofs.sites();
   shift_ = shift;
   stiffness_time_ = stiffness_time;
+  bond_time_ = bond_time;
   ++generation_;
   const auto n_nodes = static_cast<std::size_t>(nodes_);
   weigh_edges(network);
@@ -85,14 +86,18 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
 
 template <int D>
 void Resistance<D>::weigh_edges(const PairNetwork<D>& network) {
-  const bool stiff = stiffness_time_ != 0.0, transverse = network.transverse;
+  const bool transverse = network.transverse;
+  const std::int64_t pairs = network.pairs();
+  // Edges before it take no part of their stiffness.
+  const std::int64_t stiff_from = stiffness_time_ != 0.0 ? 0 : pairs;
   const auto edges = static_cast<std::size_t>(network.size());
   resize_afresh(g_, edges);
   resize_afresh(across_, transverse ? edges : 0);
   parallel_for(network.size(), [&](std::int64_t edge) {
     const auto k = static_cast<std::size_t>(edge);
     double along = network.zeta_par[k];
-    if (stiff) along += stiffness_time_ * std::max(network.k_c[k], 0.0);
+    if (edge >= stiff_from)
+      along += (edge < pairs ? stiffness_time_ : bond_time_) * std::max(network.k_c[k], 0.0);
     if (transverse) {
       along -= network.zeta_perp[k];
       across_[k] = {network.zeta_perp[k], along < 0.0 ? -1.0 : 1.0};

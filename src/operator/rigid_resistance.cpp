@@ -25,9 +25,9 @@ void add_triple_product(const double* left, const double* middle, const double* 
 template <int D>
 void RigidResistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs,
                                  const Particles<D>& particles, std::span<const Vec<D>> positions,
-                                 std::span<const Vec<D>> arms, double shift,
-                                 double stiffness_time) {
-  sites_.rebuild(network, dofs, particles, positions, shift, stiffness_time);
+                                 std::span<const Vec<D>> arms, double shift, double stiffness_time,
+                                 double bond_time) {
+  sites_.rebuild(network, dofs, particles, positions, shift, stiffness_time, bond_time);
   dofs_ = dofs.bodies() > 0 ? &dofs : nullptr;
   if (dofs_ == nullptr) return;
   arms_.assign(arms.begin(), arms.end());

@@ -11,6 +11,7 @@ namespace odpd {
 template <int D>
 void PairNetwork<D>::resize(std::int64_t edges) {
   const auto n = static_cast<std::size_t>(edges);
+  bonds = 0;
   // Some room more: the number of edges changes by little from one configuration to the next.
   const auto resize_one = [&](auto& column) {
     if (column.capacity() < n) column.reserve(n + n / 32);
@@ -65,6 +66,30 @@ void PairNetwork<D>::index_rows() {
         std::iota(edge.begin() + next[p], edge.begin() + start[p + 1],
                   static_cast<std::int32_t>(begin));
       });
+}
+
+template <int D>
+void PairNetwork<D>::index_bonds(std::int64_t count) {
+  bonds = count;
+  const auto n = static_cast<std::size_t>(particles);
+  next.assign(n, 0);
+  for (auto k = static_cast<std::size_t>(pairs()); k < i.size(); ++k)
+    for (const std::int32_t p : {i[k], j[k]}) ++next[static_cast<std::size_t>(p)];
+  edge.resize(2 * i.size());
+  // From the end on, each particle's edges move up by the bonds of those before it.
+  std::int64_t shift = 2 * count;
+  for (std::size_t p = n; p-- > 0 && shift > 0;) {
+    const std::int64_t begin = start[p], end = start[p + 1];
+    start[p + 1] += shift;
+    shift -= next[p];
+    if (shift > 0)
+      std::copy_backward(edge.begin() + begin, edge.begin() + end, edge.begin() + end + shift);
+    next[p] = static_cast<std::int32_t>(end + shift);
+  }
+  for (auto k = static_cast<std::size_t>(pairs()); k < i.size(); ++k)
+    for (const std::int32_t p : {i[k], j[k]})
+      edge[static_cast<std::size_t>(next[static_cast<std::size_t>(p)]++)] =
+          static_cast<std::int32_t>(k);
 }
 
 template <int D>

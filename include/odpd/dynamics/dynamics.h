@@ -34,8 +34,10 @@ struct DynamicsSettings {
 
 /// What a time step adds to the friction of a solve.
 struct StepWeights {
-  double inertia = 0.0;         ///< on the diagonal, M = 2 m/dt (mass/time)
-  double stiffness_time = 0.0;  ///< theta dt, weight of max(k_c, 0) along each edge (time)
+  double inertia = 0.0;  ///< on the diagonal, M = 2 m/dt (mass/time)
+  double stiffness_time =
+      0.0;                 ///< theta dt, weight of max(k_c, 0) along each edge of a pair (time)
+  double bond_time = 0.0;  ///< the same along each bond (time)
 };
 
 /// Sums over all solves of a run.
@@ -86,10 +88,12 @@ class Dynamics {
   Unknowns friction(const Stage<D>& stage, const Unknowns& q);
   /// P^T K P q, K the stiffness of the conservative force along the lines of centres (negative parts left out).
   Unknowns spring(const Stage<D>& stage, const Unknowns& q);
+  /// The same of the bonds alone.
+  Unknowns bond_spring(const Stage<D>& stage, const Unknowns& q);
   /// F - (R + zeta_0) q: all forces at the velocities q but the random ones.
   Unknowns total_force(const Stage<D>& stage, const Unknowns& q);
 
-  /// Assembles A = P^T (R + K stiffness_time) P + zeta_0 + inertia at the stage.
+  /// Assembles A = P^T (R + K_pairs stiffness_time + K_bonds bond_time) P + zeta_0 + inertia at the stage.
   const System& assemble(const Stage<D>& stage, const StepWeights& weights);
   /// Solves A q = load for the stage's velocities. `guess` in, answer out. With mass or drag and nothing of known
   /// velocity, the mean of the answer is set to what momentum balance says, to rounding. Throws SolverError when the

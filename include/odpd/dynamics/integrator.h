@@ -70,9 +70,10 @@ std::vector<double> from_identity(Dynamics<D>& dynamics, const std::vector<doubl
 /// [integrator] of a case file; keys that a scheme does not use are not read.
 struct IntegratorSettings {
   std::string name = "trapezoidal";
-  double lambda = 0.5;  ///< velocity-verlet: the velocity is predicted lambda dt ahead
-  double theta = 0.5;   ///< implicit: weight of the end of the step
-  int order = 1;        ///< setd: 1 or 2
+  double lambda = 0.5;         ///< velocity-verlet: the velocity is predicted lambda dt ahead
+  double theta = 0.5;          ///< implicit: weight of the end of the step
+  int order = 1;               ///< setd: 1 or 2
+  bool implicit_bonds = true;  ///< trapezoidal and midpoint: bonds implicitly (two_stage.h)
   double step = 0.0;  ///< monte-carlo: largest displacement per component at first; 0: 0.3 cutoffs
 };
 

@@ -1,9 +1,9 @@
 #pragma once
 // Energy of one particle among the others (of a constituent: among those outside its body),
 //
-//   U_i(r) = sum_{j != i, |r - r_j| < r_c} u(|r - r_j|) + V(r)
+//   U_i(r) = sum_{j != i, |r - r_j| < r_c} u(|r - r_j|) + U_bonds(r) + V(r)
 //
-// with u of the pair model and V of the surroundings: what a trial move changes. Particles are kept in cells one
+// with u and U_bonds of the pair model and V of the surroundings: what a trial move changes. Particles are kept in cells one
 // cutoff wide, updated move by move.
 #include <cstdint>
 #include <vector>
@@ -39,6 +39,7 @@ class LocalEnergy {
   };
   std::span<const Partner> partners_of(const Vec<D>& r);
 
+  const Box<D> box_;
   Vec<D> period_;  // of each direction, infinite where it is bounded
   const PairModel<D>& model_;
   const Surroundings<D>& surroundings_;

@@ -14,7 +14,7 @@ namespace odpd {
 template <int D>
 class Midpoint : public TwoStage<D> {
  public:
-  Midpoint() : TwoStage<D>(0.5, 0.0) {}
+  explicit Midpoint(bool implicit_bonds = true) : TwoStage<D>(0.5, 0.0, implicit_bonds) {}
   std::string name() const override { return "midpoint"; }
 };
 

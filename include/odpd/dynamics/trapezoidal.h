@@ -15,7 +15,7 @@ namespace odpd {
 template <int D>
 class Trapezoidal : public TwoStage<D> {
  public:
-  Trapezoidal() : TwoStage<D>(1.0, 0.5) {}
+  explicit Trapezoidal(bool implicit_bonds = true) : TwoStage<D>(1.0, 0.5, implicit_bonds) {}
   std::string name() const override { return "trapezoidal"; }
 };
 

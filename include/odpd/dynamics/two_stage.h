@@ -6,6 +6,13 @@
 //
 // c = 1, b = 1/2: the stochastic trapezoidal rule. c = 1/2, b = 0: Fixman's midpoint rule. Both get the drift from the same
 // stored vector xi in both stages.
+//
+// Bonds are taken implicitly (unless told otherwise), with K = sum over bonds of max(k_c, 0) e e^T, at r and K* at r*:
+//
+//   (M + R + dt/2 K ) q1 = ...,    (M + R* + dt/2 K*) q2 = ... + dt/2 K* q1 + (c - 1/2) dt K q1
+//
+// which keeps the order with and without noise (the terms of K cancel to O(dt) in both, for any K), and for a linear force at
+// constant R is the Crank-Nicolson step, which samples a harmonic bond exactly at any dt.
 #include "odpd/dynamics/integrator.h"
 
 namespace odpd {
@@ -18,10 +25,15 @@ class TwoStage : public Integrator<D> {
 
  protected:
   /// reach: c; start_weight: b.
-  TwoStage(double reach, double start_weight) : reach_(reach), start_weight_(start_weight) {}
+  TwoStage(double reach, double start_weight, bool implicit_bonds)
+      : reach_(reach), start_weight_(start_weight), implicit_bonds_(implicit_bonds) {}
 
  private:
+  void add_bond_terms(Dynamics<D>& dynamics, double dt, const std::vector<double>& q,
+                      std::vector<double>& load) const;
+
   double reach_, start_weight_;
+  bool implicit_bonds_;
 };
 
 }  // namespace odpd

@@ -48,6 +48,11 @@ template <int D>
 void add_spring_forces(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
                        std::vector<Vec<D>>& force);
 
+/// The same for bonds alone.
+template <int D>
+void add_bond_springs(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
+                      std::vector<Vec<D>>& force);
+
 /// blocks[p] += sum over edges of p of Z = zeta_par e e^T + zeta_perp (I - e e^T), row-major.
 template <int D>
 void add_friction_blocks(const PairNetwork<D>& network,

@@ -36,12 +36,14 @@ class Resistance : public System {
       : box_(box), hold_(hold_centre_of_mass) {}
 
   /// Takes over the edges of `network`; `shift` (mass/time) is added to the diagonal, e.g. 2 m/dt, and
-  /// `stiffness_time` max(k_c, 0) to the friction along each edge (time; 0: friction alone).
+  /// `stiffness_time` max(k_c, 0) to the friction along each edge of a pair, `bond_time` times that of a bond (times; 0:
+  /// friction alone).
   /// Throws SolverError for a rattler: a free particle whose friction block is singular at shift = 0, naming it by
   /// identity, its neighbours and the cures; and for a group of particles out of reach of all others. (Inner floppy modes
   /// of such a group, as in a chain with central friction, are left to the solver.)
   void rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs, const Particles<D>& particles,
-               std::span<const Vec<D>> positions, double shift, double stiffness_time = 0.0);
+               std::span<const Vec<D>> positions, double shift, double stiffness_time = 0.0,
+               double bond_time = 0.0);
 
   int block_size() const override { return D; }
   std::int64_t nodes() const override { return nodes_; }
@@ -101,7 +103,7 @@ class Resistance : public System {
   std::vector<Block> anchor_;  // per node: friction with particles of known velocity, and the shift
   std::vector<Block> diagonal_;  // per node: all of its friction, and the shift
   double shift_ = 0.0;
-  double stiffness_time_ = 0.0;
+  double stiffness_time_ = 0.0, bond_time_ = 0.0;
   bool translations_are_null_ = false;
   std::vector<double> positions_;
   std::uint64_t generation_ = 0;

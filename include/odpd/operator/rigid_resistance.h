@@ -18,7 +18,7 @@ class RigidResistance : public System {
   /// As Resistance::rebuild; `arms` as for DofMap, which must outlive the use of this operator.
   void rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs, const Particles<D>& particles,
                std::span<const Vec<D>> positions, std::span<const Vec<D>> arms, double shift,
-               double stiffness_time = 0.0);
+               double stiffness_time = 0.0, double bond_time = 0.0);
 
   /// What is to be solved: this system, or without bodies that of the sites.
   const System& system() const {

@@ -7,7 +7,7 @@
 namespace odpd {
 
 /// For each particle p in ascending order: incoming(p, k) for its edges with p = j, then row(p, begin, end) once, for its
-/// edges begin <= k < end with p = i. Needs the network's i, j and `first`.
+/// edges begin <= k < end with p = i. Needs the network's i, j and `first`. Bonds are left out.
 template <int D, class Incoming, class Row>
 void for_each_owned_edge(const PairNetwork<D>& network, const Incoming& incoming, const Row& row) {
   const std::int64_t n = network.particles;

@@ -25,7 +25,7 @@ struct PairTerms {
 };
 
 /// Edges as structure of arrays, ordered by (i, j) with i < j in memory. Edges between two particles of known
-/// velocity, or of one rigid body, are left out.
+/// velocity, or of one rigid body, are left out. Bonds follow, in an order of their own.
 template <int D>
 struct PairNetwork {
   std::int64_t particles = 0;
@@ -39,20 +39,25 @@ struct PairNetwork {
   // The edges of each particle, in fixed order: edge[start[p]] .. edge[start[p+1]-1].
   std::vector<std::int64_t> start;
   std::vector<std::int32_t> edge;
-  // Those that have it as i: first[p] .. first[p+1]-1. Empty when the edges are not ordered by i.
+  // Those of pairs that have it as i: first[p] .. first[p+1]-1. Empty when the edges are not ordered by i.
   std::vector<std::int64_t> first;
+  std::int64_t bonds = 0;  ///< edges at the end that are bonds
 
   std::int64_t size() const { return static_cast<std::int64_t>(i.size()); }
+  std::int64_t pairs() const { return size() - bonds; }
   std::span<const std::int32_t> edges_of(std::int64_t particle) const {
     const auto b = static_cast<std::size_t>(start[static_cast<std::size_t>(particle)]);
     const auto n = static_cast<std::size_t>(start[static_cast<std::size_t>(particle) + 1]) - b;
     return std::span<const std::int32_t>(edge).subspan(b, n);
   }
+  /// None of them is a bond at first.
   void resize(std::int64_t edges);
   /// Fills start and edge from i and j, whatever the order of the edges; `first` becomes empty.
   void index_edges();
   /// The same for edges ordered by (i, j), from i, j and `first`, on all threads.
   void index_rows();
+  /// The last `count` edges are bonds and not in the index yet: adds each behind the other edges of its two particles.
+  void index_bonds(std::int64_t count);
   /// Bytes held, for reports.
   std::int64_t bytes() const;
 

@@ -30,6 +30,12 @@ class PairModel {
   virtual bool conservative() const = 0;
   /// Some pair has kT > 0.
   virtual bool thermal() const = 0;
+  /// What bonds add to the energy of particle i at r among the others (and exclusions take from it); infinite where one does
+  /// not reach.
+  virtual double bonded_energy(std::size_t, const Vec<D>&, const Box<D>&,
+                               const Particles<D>&) const {
+    return 0.0;
+  }
 };
 
 }  // namespace odpd

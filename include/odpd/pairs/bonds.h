@@ -1,0 +1,75 @@
+#pragma once
+// Bonds, a second source of edges: springs between given particles at any distance, without friction and noise of their own,
+//
+//   harmonic  u = H/2 (r - r_0)^2                          f_c = -H (r - r_0)
+//   fene      u = -H/2 r_m^2 ln(1 - ((r - r_0)/r_m)^2)     f_c = -H (r - r_0)/(1 - ((r - r_0)/r_m)^2)
+//
+// (harmonic: Phan-Thien et al. 2016, eq. 50, 51). They stand behind the edges of the pairs in the network, so a bonded pair
+// closer than the cutoff has two edges.
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "odpd/pairs/pair_model.h"
+
+namespace odpd {
+
+enum class BondLaw { harmonic, fene };
+/// What a bonded pair keeps of its interaction as a pair: all, friction and noise without the conservative force, nothing.
+enum class BondExclusion { none, repulsion, all };
+
+struct BondParameters {
+  BondLaw law = BondLaw::harmonic;
+  double H = 0.0;      ///< stiffness (force/length)
+  double r_0 = 0.0;    ///< length without force
+  double r_max = 0.0;  ///< of fene: largest |r - r_0|
+  BondExclusion exclude = BondExclusion::none;
+};
+
+struct Bond {
+  std::int64_t i = 0, j = 0;  ///< identities
+  BondParameters p{};
+};
+
+/// u, f_c and k_c of a bond of length r >= 0; u is infinite (f_c and k_c are zero) where fene does not reach.
+PairTerms bond_terms(const BondParameters& p, double r);
+
+/// A pair model and the bonds of a scene.
+template <int D>
+class BondedModel : public PairModel<D> {
+ public:
+  /// kT of a bond's edge is that of its pair. Throws ConfigError: parameters out of range, a bond of a particle with itself,
+  /// or two of one pair.
+  BondedModel(std::unique_ptr<PairModel<D>> pairs, std::vector<Bond> bonds);
+
+  double cutoff() const override { return pairs_->cutoff(); }
+  PairTerms pair(double r, Site site_i, Site site_j) const override {
+    return pairs_->pair(r, site_i, site_j);
+  }
+  /// Pair edges, then an edge per bond in the order of `bonds`. Throws BlowUpError for a bond out of reach or as long as half
+  /// the box.
+  void write_edges(const PairList<D>& list, const Box<D>& box, std::span<const Vec<D>> positions,
+                   const Particles<D>& particles, PairNetwork<D>& network) const override;
+  bool conservative() const override { return pairs_->conservative() || !bonds_.empty(); }
+  bool thermal() const override { return pairs_->thermal(); }
+  double bonded_energy(std::size_t i, const Vec<D>& r, const Box<D>& box,
+                       const Particles<D>& particles) const override;
+
+  const std::vector<Bond>& bonds() const { return bonds_; }
+
+ private:
+  std::size_t place_of(std::int64_t id, const Particles<D>& particles) const;
+  void exclude(const Particles<D>& particles, PairNetwork<D>& network) const;
+  void write_bond(const Bond& bond, double half_box, const Box<D>& box,
+                  std::span<const Vec<D>> positions, const Particles<D>& particles, std::size_t k,
+                  PairNetwork<D>& network) const;
+
+  std::unique_ptr<PairModel<D>> pairs_;
+  std::vector<Bond> bonds_;
+  bool excludes_ = false;
+  // Of each identity: bond_of_[start_[id]] .. are its bonds.
+  std::vector<std::size_t> start_, bond_of_;
+  mutable std::vector<std::int32_t> index_;  // memory index of each identity, when last looked at
+};
+
+}  // namespace odpd
