@@ -45,13 +45,18 @@ void add_edges(const PairNetwork<D>& network, bool opposite, const Value& value,
 
 // Friction on i of edge k.
 template <int D>
-Vec<D> friction_of(const PairNetwork<D>& network, std::size_t k, std::span<const Vec<D>> velocity) {
-  const Vec<D> slip = velocity[static_cast<std::size_t>(network.i[k])] -
-                      velocity[static_cast<std::size_t>(network.j[k])];
+Vec<D> friction_of(const PairNetwork<D>& network, std::size_t k, const Vec<D>& slip) {
   const double along = dot(slip, network.e[k]);
   Vec<D> force = (network.zeta_perp[k] - network.zeta_par[k]) * along * network.e[k];
   if (network.transverse) force -= network.zeta_perp[k] * slip;
   return force;
+}
+
+template <int D>
+Vec<D> friction_of(const PairNetwork<D>& network, std::size_t k, std::span<const Vec<D>> velocity) {
+  return friction_of(network, k,
+                     velocity[static_cast<std::size_t>(network.i[k])] -
+                         velocity[static_cast<std::size_t>(network.j[k])]);
 }
 
 }  // namespace
@@ -74,6 +79,14 @@ void add_friction_forces(const PairNetwork<D>& network, std::span<const Vec<D>> 
                          std::vector<Vec<D>>& force) {
   add_edges(
       network, true, [&](std::size_t k) { return friction_of(network, k, velocity); }, force);
+}
+
+template <int D>
+void add_sliding_friction(const PairNetwork<D>& network, std::vector<Vec<D>>& force) {
+  if (network.slip_0.empty()) return;
+  add_edges(
+      network, true, [&](std::size_t k) { return friction_of(network, k, network.slip_0[k]); },
+      force);
 }
 
 template <int D>
@@ -133,6 +146,7 @@ void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian
   template void add_conservative_forces<D>(const PairNetwork<D>&, std::vector<Vec<D>>&);         \
   template void add_friction_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,           \
                                        std::vector<Vec<D>>&);                                    \
+  template void add_sliding_friction<D>(const PairNetwork<D>&, std::vector<Vec<D>>&);            \
   template void add_known_friction<D>(const PairNetwork<D>&, std::span<const std::int32_t>,      \
                                       std::span<const Vec<D>>, std::vector<Vec<D>>&);            \
   template void add_spring_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,             \

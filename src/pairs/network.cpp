@@ -19,6 +19,7 @@ void PairNetwork<D>::resize(std::int64_t edges) {
   resize_one(j);
   resize_one(e);
   for (auto* column : {&r, &u, &f_c, &k_c, &zeta_par, &zeta_perp, &kT}) resize_one(*column);
+  if (!slip_0.empty()) resize_one(slip_0);
   for (auto* constant :
        {&constant_k_c, &constant_zeta_perp, &constant_kT, &constant_f_c, &constant_u})
     constant->cut(n);
@@ -78,9 +79,10 @@ void PairNetwork<D>::index_rows() {
 template <int D>
 std::int64_t PairNetwork<D>::bytes() const {
   constexpr std::size_t per_edge = 2 * sizeof(std::int32_t) + sizeof(Vec<D>) + 7 * sizeof(double);
-  return static_cast<std::int64_t>(
-      i.size() * per_edge + (edge.size() + scratch.size() + next.size()) * sizeof(std::int32_t) +
-      (start.size() + first.size()) * sizeof(std::int64_t));
+  return static_cast<std::int64_t>(i.size() * per_edge + slip_0.size() * sizeof(Vec<D>) +
+                                   (edge.size() + scratch.size() + next.size()) *
+                                       sizeof(std::int32_t) +
+                                   (start.size() + first.size()) * sizeof(std::int64_t));
 }
 
 template struct PairNetwork<2>;

@@ -18,10 +18,14 @@ void add_edge_forces(const PairNetwork<D>& network, std::span<const Vec<D>> edge
 template <int D>
 void add_conservative_forces(const PairNetwork<D>& network, std::vector<Vec<D>>& force);
 
-/// force[p] -= (R v)_p, friction with the physical zeta for the velocities of all particles.
+/// force[p] -= (R v)_p, friction with the physical zeta for the velocities of all particles, without that of slip_0.
 template <int D>
 void add_friction_forces(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
                          std::vector<Vec<D>>& force);
+
+/// force[p] -= friction by the network's slip_0 alone (nothing where there is none).
+template <int D>
+void add_sliding_friction(const PairNetwork<D>& network, std::vector<Vec<D>>& force);
 
 /// The same on the partners of the particles `known` (places in memory, ascending), for the motion of those alone: `velocity`
 /// of all others is zero. Costs as much as they have edges.
