@@ -23,9 +23,10 @@ int read_axis(const Config& config, const std::string& key, int dimension,
   return config.choice(key, names, fallback)[0] - 'x';
 }
 
-// Direction across which a profile makes sense by default: the first bounded one.
+// Direction across which a profile makes sense by default: that of a shear, or the first bounded one.
 template <int D>
 std::string default_axis(const Scene<D>& scene) {
+  if (scene.box().shear) return {"xyz"[scene.box().shear->gradient]};
   for (int c = 0; c < D; ++c)
     if (!scene.box().is_periodic(c)) return {"xyz"[c]};
   return "y";
@@ -54,7 +55,8 @@ std::unique_ptr<Observer<D>> make_profile(const Config& entry, ObserverSettings 
   p.fit = fit == "linear"     ? ProfileFit::linear
           : fit == "parabola" ? ProfileFit::parabola
                               : ProfileFit::none;
-  p.component = read_axis(entry, "component", D, "x");
+  p.component =
+      read_axis(entry, "component", D, {"xyz"[scene.box().shear ? scene.box().shear->flow : 0]});
   // By default the fit keeps one cutoff clear of the surfaces, where walls order the fluid.
   const double margin = scene.box().is_periodic(p.axis) ? 0.0 : scene.model().cutoff();
   p.fit_from = entry.number("fit_from", scene.fluid_low()[p.axis] + margin);
@@ -129,6 +131,8 @@ std::unique_ptr<Observer<D>> make_msd(const Config& entry, ObserverSettings sett
     names.emplace_back(1, "xyz"[c]);
     bool flows = scene.settings().body_force[c] != 0.0 || !scene.box().is_periodic(c);
     for (const auto& wall : scene.settings().walls) flows = flows || wall.velocity[c] != 0.0;
+    const auto& shear = scene.box().shear;
+    flows = flows || (shear && shear->flow == c);
     if (!flows) fallback.push_back(names.back());
   }
   if (fallback.empty())
@@ -140,6 +144,11 @@ std::unique_ptr<Observer<D>> make_msd(const Config& entry, ObserverSettings sett
     if (at == names.end())
       entry.fail("directions", fmt::format("there is no direction '{}'", name));
     m.directions.push_back(static_cast<int>(at - names.begin()));
+    if (scene.box().shear && scene.box().shear->flow == m.directions.back())
+      entry.fail("directions",
+                 fmt::format("{} is the flow direction of [shear]: displacements along it are "
+                             "advection, and jump where a particle crosses a sliding face",
+                             name));
   }
   if (m.directions.empty()) entry.fail("directions", "at least one direction is needed");
   return std::make_unique<Msd<D>>(std::move(settings), m, scene, clock.dt);

@@ -72,7 +72,7 @@ FrozenProblem<D> freeze(Simulation<D>& simulation, std::int64_t steps) {
   const std::vector<double> xi = dynamics.draw_noise(stage, clock.step, clock.dt, edge_noise);
   const bool hold = simulation.settings().dynamics.hold_centre_of_mass;
   FrozenProblem<D> problem{
-      Resistance<D>(dynamics.box(), hold), Resistance<D>(dynamics.box(), true), {}, {}, {}};
+      Resistance<D>(stage.box, hold), Resistance<D>(stage.box, true), {}, {}, {}};
   // The first solve of a step with implicit friction.
   problem.b = dynamics.force(stage);
   const std::vector<double> q = dynamics.end_velocity();

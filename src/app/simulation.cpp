@@ -64,6 +64,9 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings)
   if (const std::string why = mass_objection(settings_.integrator.name, scene_.settings().mass);
       !why.empty())
     config.table("integrator").fail("name", why);
+  if (const std::string why = shear_objection(settings_.integrator.name);
+      !why.empty() && scene_.box().shear)
+    config.table("integrator").fail("name", why);
   config.reject_unread();
   integrator_->check(dynamics_);
   check_observables(config);

@@ -15,6 +15,8 @@ Scene<D>::Scene(SceneSettings<D> settings)
   place_fluid(settings_, fluid_low(), fluid_high(), particles_);
   relax(settings_.box, *model_, *this, settings_.relax_sweeps, particles_);
   draw_velocities(settings_.seed, largest_kT(), settings_.mass, conserves_momentum(), particles_);
+  for (std::size_t i = 0; i < particles_.end_velocity.size() && settings_.box.shear; ++i)
+    particles_.end_velocity[i] += settings_.box.flow_velocity(particles_.position[i]);
 }
 
 template <int D>

@@ -259,6 +259,45 @@ void read_walls(const Config& config, SceneSettings<D>& scene) {
                         "xyz"[c], high ? "upper" : "lower", "xyz"[c], high ? '+' : '-'));
 }
 
+// After [[wall]] and [fluid], which it contradicts.
+template <int D>
+void read_shear(const Config& config, SceneSettings<D>& scene) {
+  if (!config.has("shear")) return;
+  const Config entry = config.table("shear");
+  std::vector<std::string> names;
+  for (int c = 0; c < D; ++c) names.emplace_back(1, "xyz"[c]);
+  Shear shear;
+  const auto read_direction = [&](const std::string& key, const std::string& fallback) {
+    const std::string name = entry.choice(key, names, fallback);
+    if (!scene.box.is_periodic(name[0] - 'x'))
+      entry.fail(key, fmt::format("direction {} is bounded: sliding images need it periodic "
+                                  "(box.periodic); between walls give a [[wall]] a velocity",
+                                  name));
+    return name[0] - 'x';
+  };
+  shear.flow = read_direction("flow", "x");
+  shear.gradient = read_direction("gradient", "y");
+  if (shear.flow == shear.gradient)
+    entry.fail("gradient", "the flow varies across another direction than its own");
+  shear.rate = entry.number("rate");
+  shear.frequency = entry.non_negative("frequency", 0.0);
+  if (!scene.walls.empty())
+    entry.fail("rate",
+               "sliding images would tear a [[wall]] apart: make its direction periodic, or leave "
+               "[shear] out and give walls a velocity");
+  if (shear.frequency > 0.0 && scene.mass > 0.0)
+    entry.fail("frequency",
+               "with mass an oscillation spreads from the sliding faces instead of being uniform: "
+               "set fluid.mass = 0.0, or frequency = 0.0");
+  if (config.table("fluid").non_negative("zeta_0", 0.0) > 0.0)
+    config.table("fluid").fail(
+        "zeta_0",
+        "a drag relative to the frame at rest differs between the sliding images of a particle: "
+        "leave it out under [shear] (against rattlers use fluid.rattler_friction)");
+  scene.box.shear = shear;
+  scene.box = scene.box.at(0.0);
+}
+
 template <int D>
 void read_start(const Config& config, SceneSettings<D>& scene) {
   const Config start = config.table("start");
@@ -287,7 +326,8 @@ std::int32_t species_index(const std::vector<SpeciesSettings>& species, const Co
 template <int D>
 bool SceneSettings<D>::driven() const {
   const auto moves = [](const WallSettings<D>& w) { return dot(w.velocity, w.velocity) > 0.0; };
-  return dot(body_force, body_force) > 0.0 || std::any_of(walls.begin(), walls.end(), moves);
+  return (box.shear && box.shear->rate != 0.0) || dot(body_force, body_force) > 0.0 ||
+         std::any_of(walls.begin(), walls.end(), moves);
 }
 
 template <int D>
@@ -329,6 +369,7 @@ SceneSettings<D> read_scene_settings(const Config& config) {
   read_start(config, scene);
   read_walls(config, scene);
   read_fluid(config, scene);
+  read_shear(config, scene);
   const Config body_force = config.table("body_force");
   scene.body_force = read_optional_vector<D>(body_force, "force");
   if (scene.walls.empty() && dot(scene.body_force, scene.body_force) > 0.0)

@@ -81,6 +81,8 @@ std::vector<std::string> integrator_names();
 IntegratorSettings read_integrator(const Config& config);
 /// Why this integrator cannot run particles of this mass, with the remedy; empty when it can.
 std::string mass_objection(const std::string& name, double mass);
+/// Why this integrator cannot run under [shear], with the remedy; empty when it can.
+std::string shear_objection(const std::string& name);
 /// Throws ConfigError for an unknown name, listing the names.
 template <int D>
 std::unique_ptr<Integrator<D>> make_integrator(const IntegratorSettings& settings);

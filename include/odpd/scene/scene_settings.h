@@ -60,7 +60,7 @@ struct SceneSettings {
   std::vector<std::int32_t> start_species;  ///< one per start position
   std::int64_t relax_sweeps = 100;          ///< of overlap removal before the run
 
-  /// Something drives a flow: a body force or a moving wall.
+  /// Something drives a flow: a body force, a moving wall or shear.
   bool driven() const;
   int wall_at(int axis, bool high) const;  ///< index into walls, -1 when there is none
   /// Ends of the space between the wall surfaces (the box itself where it is periodic), and its volume.
@@ -69,7 +69,7 @@ struct SceneSettings {
   double fluid_volume() const;
 };
 
-/// Reads [box], [fluid], [[species]], [[pair]], [[wall]], [body_force], [start] and `seed`. Throws ConfigError for
+/// Reads [box], [fluid], [[species]], [[pair]], [[wall]], [shear], [body_force], [start] and `seed`. Throws ConfigError for
 /// values out of range and for contradictions (both gamma and sigma, a wall in a periodic direction, ...).
 template <int D>
 SceneSettings<D> read_scene_settings(const Config& config);
