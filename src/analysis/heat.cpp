@@ -19,7 +19,8 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
   std::vector<double> friction(network.i.size()), noise(record.edge_noise.size());
   parallel_for(network.size(), [&](std::int64_t edge) {
     const auto k = static_cast<std::size_t>(edge);
-    friction[k] = -dot(friction_of<D>(network, k, stage.velocity), slip(network, k));
+    friction[k] =
+        -dot(friction_of<D>(network, k, network.slip(k, stage.velocity)), slip(network, k));
   });
   for (std::size_t k = 0; k < noise.size(); ++k)
     noise[k] = -dot(record.edge_noise[k], slip(record.start.network, k));

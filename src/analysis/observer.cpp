@@ -28,9 +28,11 @@ int read_axis(const Config& config, const std::string& key, int dimension,
   return config.choice(key, names, fallback)[0] - 'x';
 }
 
-// Direction across which a profile makes sense by default: the first bounded one, else that along which the force varies.
+// Direction across which a profile makes sense by default: that of a shear, the first bounded one, or that along which the
+// force varies.
 template <int D>
 std::string default_axis(const Scene<D>& scene) {
+  if (scene.box().shear) return {"xyz"[scene.box().shear->gradient]};
   for (int c = 0; c < D; ++c)
     if (!scene.box().is_periodic(c)) return {"xyz"[c]};
   const auto& s = scene.settings();
@@ -66,7 +68,8 @@ std::unique_ptr<Observer<D>> make_profile(const Config& entry, ObserverSettings 
   const ForceWave& wave = scene.settings().force_wave;
   if (p.fit == ProfileFit::sine && (wave.number == 0 || wave.along != p.axis))
     entry.fail("fit", "a sine needs body_force.wave along the profile's axis");
-  p.component = read_axis(entry, "component", D, "x");
+  p.component =
+      read_axis(entry, "component", D, {"xyz"[scene.box().shear ? scene.box().shear->flow : 0]});
   // By default the fit keeps one cutoff clear of the surfaces, where walls order the fluid.
   const double margin = scene.box().is_periodic(p.axis) ? 0.0 : scene.model().cutoff();
   p.fit_from = entry.number("fit_from", scene.fluid_low()[p.axis] + margin);
@@ -158,6 +161,8 @@ std::unique_ptr<Observer<D>> make_msd(const Config& entry, ObserverSettings sett
     names.emplace_back(1, "xyz"[c]);
     bool flows = scene.settings().forces_along(c) || !scene.box().is_periodic(c);
     for (const auto& wall : scene.settings().walls) flows = flows || wall.velocity[c] != 0.0;
+    const auto& shear = scene.box().shear;
+    flows = flows || (shear && shear->flow == c);
     if (!flows) fallback.push_back(names.back());
   }
   if (fallback.empty())
@@ -169,6 +174,11 @@ std::unique_ptr<Observer<D>> make_msd(const Config& entry, ObserverSettings sett
     if (at == names.end())
       entry.fail("directions", fmt::format("there is no direction '{}'", name));
     m.directions.push_back(static_cast<int>(at - names.begin()));
+    if (scene.box().shear && scene.box().shear->flow == m.directions.back())
+      entry.fail("directions",
+                 fmt::format("{} is the flow direction of [shear]: displacements along it are "
+                             "advection, and jump where a particle crosses a sliding face",
+                             name));
   }
   if (m.directions.empty()) entry.fail("directions", "at least one direction is needed");
   return std::make_unique<Msd<D>>(std::move(settings), m, scene, clock.dt);

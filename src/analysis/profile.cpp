@@ -39,15 +39,21 @@ void Profile<D>::measure(const Clock&, const Particles<D>& particles, const Step
   double wall_energy = 0.0;
   configurational_terms(scene_, particles, record.start, force_squared, laplacian, wall_energy);
   newest_.assign(average_.width(), 0.0);
+  const Box<D> box = scene_.box().at(record.start.time + 0.5 * record.dt);
   for (std::size_t i = 0; i < record.v_mid.size(); ++i) {
     if (!particles.is_free(i)) continue;
     Vec<D> middle = record.start.position[i] + (0.5 * record.dt) * record.v_mid[i];
-    scene_.box().wrap(middle);
+    Vec<D> velocity = record.v_mid[i];
+    std::array<std::int32_t, static_cast<std::size_t>(D)> image{};
+    box.wrap(middle, image);
+    if (box.shear)
+      velocity[box.shear->flow] -=
+          image[static_cast<std::size_t>(box.shear->gradient)] * box.sliding;
     if (const std::int64_t bin = bin_of(middle); bin >= 0) {
       newest_[column(static_cast<std::size_t>(bin), 0)] += 1.0;
       for (int c = 0; c < D; ++c)
         newest_[column(static_cast<std::size_t>(bin), static_cast<std::size_t>(c) + 1)] +=
-            record.v_mid[i][c];
+            velocity[c];
     }
     if (const std::int64_t bin = bin_of(record.start.position[i]); bin >= 0) {
       newest_[column(static_cast<std::size_t>(bin), D + 1)] += force_squared[i];

@@ -55,7 +55,8 @@ std::size_t Rdf<D>::pair_index(std::int32_t a, std::int32_t b) const {
 
 template <int D>
 void Rdf<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
-  PairList<D> list(scene_.box(), r_max_, 0.0);
+  const Box<D>& box = record.start.box;
+  PairList<D> list(box, r_max_, 0.0);
   const auto& r = record.start.position;
   list.update(r);
   newest_.assign(average_.width(), 0.0);
@@ -65,7 +66,7 @@ void Rdf<D>::measure(const Clock&, const Particles<D>& particles, const StepReco
     for (const std::int32_t partner : list.partners(row)) {
       const auto j = static_cast<std::size_t>(partner);
       if (!particles.is_free(j)) continue;
-      const double distance = norm(scene_.box().separation(r[i], r[j]));
+      const double distance = norm(box.separation(r[i], r[j]));
       const auto bin = static_cast<std::size_t>(distance / r_max_ * static_cast<double>(bins_));
       if (bin < bins_)
         newest_[pair_index(particles.species[i], particles.species[j]) * bins_ + bin] += 1.0;

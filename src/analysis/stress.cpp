@@ -112,8 +112,8 @@ void add_stage_stress(const StressGrid<D>& grid, const Stage<D>& stage, double w
     const Vec<D> arm = network.r[k] * network.e[k];
     if (network.f_c[k] != 0.0)
       grid.add_line(conservative_part, r, arm, arm, (weight * network.f_c[k]) * network.e[k], into);
-    grid.add_line(friction_part, r, arm, arm, weight * friction_of<D>(network, k, stage.velocity),
-                  into);
+    grid.add_line(friction_part, r, arm, arm,
+                  weight * friction_of<D>(network, k, network.slip(k, stage.velocity)), into);
   };
   add_in_blocks(network.i.size(), grid.width(), edge, sum);
 }

@@ -41,6 +41,14 @@ double kinetic_temperature(const Scene<D>& scene, const Particles<D>& particles,
   return mass * square / (D * (conserved ? n - 1.0 : n));
 }
 
+// Velocities less those of the flow that a shear imposes.
+template <int D>
+std::vector<Vec<D>> peculiar(const Stage<D>& stage, std::vector<Vec<D>> velocity) {
+  for (std::size_t i = 0; i < velocity.size() && stage.box.shear; ++i)
+    velocity[i] -= stage.box.flow_velocity(stage.position[i]);
+  return velocity;
+}
+
 template <int D>
 Thermo<D>::Thermo(ObserverSettings settings, const Scene<D>& scene)
     : Observer<D>(std::move(settings)), scene_(scene), average_(5) {}
@@ -60,7 +68,8 @@ void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepR
   const double volume = scene_.fluid_volume();
   newest_ = {(network.u.sum() + wall_energy) / n,
              (n * scene_.largest_kT() + fixed_sum(virial) / D) / volume, fixed_sum(force_squared),
-             fixed_sum(laplacian), kinetic_temperature(scene_, particles, record.v_start)};
+             fixed_sum(laplacian),
+             kinetic_temperature(scene_, particles, peculiar(record.start, record.v_start))};
   average_.add(newest_);
 }
 

@@ -29,6 +29,7 @@ void WallForce<D>::add_stage(const Particles<D>& particles, const Stage<D>& stag
   std::vector<Vec<D>> force = noise_force;
   add_conservative_forces(stage.network, force);
   add_friction_forces<D>(stage.network, stage.velocity, force);
+  add_sliding_friction(stage.network, force);
   for (std::size_t i = 0; i < force.size(); ++i) {
     if (!particles.is_known(i) || particles.body_of(i) >= 0) continue;
     const auto wall = static_cast<std::size_t>(particles.group[i] - 1);

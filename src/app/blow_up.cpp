@@ -59,6 +59,10 @@ BlowUpWatch<D>::BlowUpWatch(const Scene<D>& scene, double multiple)
     fastest_squared = std::max(fastest_squared, dot(wall.velocity, wall.velocity));
   if (fastest_squared > 0.0)
     flow_slip_ = 2.0 * std::sqrt(fastest_squared * scene.model().cutoff() / fluid_depth());
+  // As between walls that move with half the sliding velocity each.
+  if (const auto& shear = scene.box().shear)
+    flow_slip_ = std::abs(shear->rate) *
+                 std::sqrt(scene.model().cutoff() * scene.box().size[shear->gradient]);
 }
 
 template <int D>
@@ -84,10 +88,10 @@ auto BlowUpWatch<D>::sum_pairs(const Stage<D>& stage, double dt) const -> Pairs 
                j = static_cast<std::size_t>(network.j[k]);
     if (network.r[k] > reach || !particles.is_free(i) || !particles.is_free(j)) continue;
     sum.count += 1.0;
-    const Vec<D> path = dt * (particles.velocity[i] - particles.velocity[j]);
+    const Vec<D> path = dt * network.slip(k, particles.velocity);
     if (dot(path, path) > std::pow(scene_.model().cutoff(), 2)) sum.jumped += 1.0;
     if (particles.end_velocity.empty()) continue;
-    const Vec<D> slip = particles.end_velocity[i] - particles.end_velocity[j];
+    const Vec<D> slip = network.slip(k, particles.end_velocity);
     sum.slip_squared += dot(slip, slip);
   }
   return sum;

@@ -71,11 +71,8 @@ FrozenProblem<D> freeze(Simulation<D>& simulation, std::int64_t steps) {
   dynamics.evaluate(dynamics.particles().position, clock.time(), stage);
   const std::vector<double> xi = dynamics.draw_noise(stage, clock.step, clock.dt, edge_noise);
   const bool hold = simulation.settings().dynamics.hold_centre_of_mass;
-  FrozenProblem<D> problem{RigidResistance<D>(dynamics.box(), hold),
-                           RigidResistance<D>(dynamics.box(), true),
-                           {},
-                           {},
-                           {}};
+  FrozenProblem<D> problem{
+      RigidResistance<D>(stage.box, hold), RigidResistance<D>(stage.box, true), {}, {}, {}};
   // The first solve of a step with implicit friction.
   problem.b = dynamics.force(stage);
   const double inertia = dynamics.inertia(clock.dt);

@@ -67,6 +67,9 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings)
   if (const std::string why = bodies_objection(settings_.integrator.name);
       !why.empty() && dynamics_.dofs().bodies() > 0)
     config.table("integrator").fail("name", why);
+  if (const std::string why = shear_objection(settings_.integrator.name);
+      !why.empty() && scene_.box().shear)
+    config.table("integrator").fail("name", why);
   config.reject_unread();
   integrator_->check(dynamics_);
   check_observables(config);

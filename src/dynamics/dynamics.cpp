@@ -68,6 +68,7 @@ template <int D>
 void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage<D>& stage) {
   const auto n = static_cast<std::int64_t>(positions.size());
   stage.time = time;
+  stage.box = box_.at(time);
   for (auto* column :
        {&stage.position, &stage.potential_force, &stage.driving_force, &stage.velocity})
     column->resize(positions.size());
@@ -91,13 +92,41 @@ void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage
   if (!particles_.bodies.empty()) place_arms(time, stage);
   {
     const PhaseTimer timer(phases_, Phase::neighbours);
+    wrap_sheared(stage);
+    list_.slide(stage.box);
     list_.update(stage.position);
   }
   const PhaseTimer timer(phases_, Phase::edges);
-  model_.write_edges(list_, box_, stage.position, particles_, stage.network);
+  model_.write_edges(list_, stage.box, stage.position, particles_, stage.network);
+  refer_slips_to_start(stage);
   if (model_.conservative()) add_conservative_forces(stage.network, stage.potential_force);
   surroundings_.add_potential_forces(particles_, stage.position, stage.potential_force);
   surroundings_.add_driving_forces(particles_, stage.position, time, stage.driving_force);
+}
+
+template <int D>
+void Dynamics<D>::wrap_sheared(Stage<D>& stage) const {
+  stage.crossed.assign(box_.shear ? stage.position.size() : 0, 0);
+  if (!box_.shear) return;
+  const auto gradient = static_cast<std::size_t>(box_.shear->gradient);
+  parallel_for(static_cast<std::int64_t>(stage.position.size()), [&](std::int64_t particle) {
+    const auto i = static_cast<std::size_t>(particle);
+    std::array<std::int32_t, static_cast<std::size_t>(D)> image{};
+    stage.box.wrap(stage.position[i], image);
+    stage.crossed[i] = image[gradient];
+  });
+}
+
+template <int D>
+void Dynamics<D>::refer_slips_to_start(Stage<D>& stage) const {
+  PairNetwork<D>& network = stage.network;
+  if (network.slip_0.empty()) return;
+  parallel_for(network.size(), [&](std::int64_t edge) {
+    const auto k = static_cast<std::size_t>(edge);
+    const std::int32_t up = stage.crossed[static_cast<std::size_t>(network.i[k])] -
+                            stage.crossed[static_cast<std::size_t>(network.j[k])];
+    if (up != 0) network.slip_0[k][box_.shear->flow] -= up * stage.box.sliding;
+  });
 }
 
 template <int D>
@@ -140,6 +169,7 @@ auto Dynamics<D>::force(const Stage<D>& stage) -> Unknowns {
     }
     add_known_friction<D>(stage.network, known, velocity, force);
   }
+  add_sliding_friction(stage.network, force);
   Unknowns f;
   dofs().gather(stage.arms, force, f);
   for (std::size_t b = 0; b < static_cast<std::size_t>(dofs().bodies()); ++b) {
@@ -182,6 +212,7 @@ auto Dynamics<D>::total_force(const Stage<D>& stage, const Unknowns& q) -> Unkno
 template <int D>
 const System& Dynamics<D>::assemble(const Stage<D>& stage, const StepWeights& weights) {
   const PhaseTimer timer(phases_, Phase::assembly);
+  resistance_.slide(stage.box);
   resistance_.rebuild(stage.network, dofs(), particles_, stage.position, stage.arms,
                       weights.inertia + settings_.zeta_0, weights.stiffness_time,
                       weights.bond_time);
@@ -198,6 +229,18 @@ void Dynamics<D>::balance_momentum(const Unknowns& load, double shift, Unknowns&
   for (std::size_t k = 0; k < q.size(); ++k) excess.x[k % D] += load[k] / shift - q[k];
   excess *= static_cast<double>(D) / static_cast<double>(q.size());
   for (std::size_t k = 0; k < q.size(); ++k) q[k] += excess.x[k % D];
+}
+
+/// Relative to the flow at their places the particles do not move in the mean: the same wherever the box is cut.
+template <int D>
+void Dynamics<D>::add_mean_flow(const Stage<D>& stage, Unknowns& q) {
+  Vec<D> mean{};
+  for (std::size_t i = 0; i < stage.position.size(); ++i) {
+    mean += stage.box.flow_velocity(stage.position[i]);
+    mean[box_.shear->flow] += stage.crossed[i] * stage.box.sliding;
+  }
+  mean *= 1.0 / static_cast<double>(stage.position.size());
+  for (std::size_t k = 0; k < q.size(); ++k) q[k] += mean.x[k % D];
 }
 
 template <int D>
@@ -230,6 +273,7 @@ void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights
   if (shift > 0.0 && !guess.empty() && dofs().nodes() == dofs().particles() &&
       particles_.bodies.empty() && !system.holds_centre_of_mass())
     balance_momentum(load, shift, guess);
+  if (box_.shear && system.translations_are_null()) add_mean_flow(stage, guess);
   stage.velocity = velocities(stage, guess);
   for (std::size_t i = 0; i < stage.velocity.size(); ++i)
     if (!finite(stage.velocity[i]))
@@ -311,7 +355,7 @@ std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, 
   parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       r[i] += dt * velocity[i];
-      box_.wrap(r[i]);
+      if (!box_.shear) box_.wrap(r[i]);
       if (particles_.is_free(i) && surroundings_.confine(r[i]))
         ++caught[static_cast<std::size_t>(begin / range)];
     }
@@ -325,18 +369,27 @@ std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, 
 }
 
 template <int D>
-std::int64_t Dynamics<D>::move(const std::vector<Vec<D>>& velocity, double dt) {
+std::int64_t Dynamics<D>::move(const std::vector<Vec<D>>& velocity, double dt, double t) {
   check_paths(velocity, dt);
   std::vector<std::size_t> moved;
   for (std::size_t b = 0; b < particles_.bodies.size(); ++b)
     if (advance(b, velocity, dt, particles_.bodies[b].pose)) moved.push_back(b);
+  const Box<D> box = box_.at(t + dt);
+  faces_crossed_.resize(box.shear ? velocity.size() : 0);
   const auto n = static_cast<std::int64_t>(velocity.size());
   std::vector<std::int64_t> caught(ranges(n), 0);
   parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       particles_.position[i] += dt * velocity[i];
       particles_.velocity[i] = velocity[i];
-      box_.wrap(particles_.position[i], particles_.image[i]);
+      const auto image = particles_.image[i];
+      box.wrap(particles_.position[i], particles_.image[i]);
+      if (box.shear) {
+        const auto up = static_cast<std::size_t>(box.shear->gradient);
+        faces_crossed_[i] = Vec<D>{};
+        faces_crossed_[i][box.shear->flow] = (particles_.image[i][up] - image[up]) * box.sliding;
+        particles_.velocity[i] -= faces_crossed_[i];
+      }
       if (particles_.is_free(i) && surroundings_.confine(particles_.position[i]))
         ++caught[static_cast<std::size_t>(begin / range)];
     }
@@ -344,6 +397,14 @@ std::int64_t Dynamics<D>::move(const std::vector<Vec<D>>& velocity, double dt) {
   for (const std::size_t b : moved)
     place(b, particles_.bodies[b].pose, particles_.position, &particles_.image);
   return std::accumulate(caught.begin(), caught.end(), std::int64_t{0});
+}
+
+template <int D>
+void Dynamics<D>::cross_faces(Unknowns& q) {
+  if (faces_crossed_.empty()) return;
+  Unknowns lost;
+  dofs().gather({}, faces_crossed_, lost);
+  for (std::size_t k = 0; k < q.size(); ++k) q[k] -= lost[k];
 }
 
 template class Dynamics<2>;

@@ -30,10 +30,11 @@ const StepRecord<D>& Extrapolated<D>::step(Dynamics<D>& dynamics, const Clock& c
 
   const std::vector<double> drag = dynamics.friction(record.start, q);
   this->finish(dynamics, clock, q);
-  last_velocity_ = by_identity(dynamics, q);
   std::vector<double> rest = force;
   for (std::size_t k = 0; k < q.size(); ++k) rest[k] -= drag[k];
   last_force_ = by_identity(dynamics, rest);
+  dynamics.cross_faces(q);
+  last_velocity_ = by_identity(dynamics, q);
   return record;
 }
 

@@ -53,10 +53,11 @@ void Integrator<D>::begin(Dynamics<D>& dynamics, const Clock& clock) {
 template <int D>
 void Integrator<D>::finish(Dynamics<D>& dynamics, const Clock& clock, const Unknowns& q_mid) {
   record_.v_mid = dynamics.velocities(record_.start, q_mid);
-  record_.alarm_crossings += dynamics.move(record_.v_mid, clock.dt);
+  record_.alarm_crossings += dynamics.move(record_.v_mid, clock.dt, clock.time());
   if (!dynamics.has_mass()) return;
   Unknowns q = dynamics.end_velocity(record_.start);
   for (std::size_t k = 0; k < q.size(); ++k) q[k] = 2.0 * q_mid[k] - q[k];
+  dynamics.cross_faces(q);
   dynamics.set_end_velocity(record_.start, q);
 }
 
@@ -159,6 +160,16 @@ std::string bodies_objection(const std::string& name) {
       "'{}' moves particles one by one, but the scene has bodies that move freely ([[body]]): use "
       "trapezoidal, at any mass",
       name);
+}
+
+std::string shear_objection(const std::string& name) {
+  if (name == "monte-carlo")
+    return "'monte-carlo' samples an equilibrium, and a sheared fluid has none: leave [shear] out, "
+           "or use trapezoidal";
+  if (name == "implicit")
+    return "'implicit' takes the stiffness between sliding images by the velocities in the box "
+           "alone, which is wrong: use trapezoidal, midpoint or extrapolated under [shear]";
+  return {};
 }
 
 template <int D>

@@ -95,11 +95,14 @@ const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
     advance<D>(a, clock.dt, dynamics.settings().mass, p, &v[n * D], &q_mid[n * D]);
   }
   record.v_mid = dynamics.velocities(record.start, q_mid);
-  record.alarm_crossings += dynamics.move(record.v_mid, clock.dt);
+  record.alarm_crossings += dynamics.move(record.v_mid, clock.dt, clock.time());
   if (order_ > 1) {
-    last_velocity_ = by_identity(dynamics, v_before);
+    std::vector<double> last = v_before;
+    dynamics.cross_faces(last);
+    last_velocity_ = by_identity(dynamics, last);
     last_force_ = by_identity(dynamics, force);
   }
+  dynamics.cross_faces(v);
   dynamics.set_end_velocity(record.start, v);
   return record;
 }

@@ -84,7 +84,7 @@ void Shardlow<D>::exchange(Dynamics<D>& dynamics, const Clock& clock,
     const Vec<D>& e = network.e[k];
     const double mu = free[i] && free[j] ? 0.5 * mass : mass;
     const EdgeNormals<D> w(random, network, particles, k);
-    const Vec<D> slip = velocity[i] - velocity[j];
+    const Vec<D> slip = network.slip(k, velocity);
     const double along = dot(slip, e);
     Vec<D> change = relaxation(along, network.zeta_par[k], mu, network.kT[k], clock.dt,
                                thermal ? w.along() : 0.0) *
@@ -96,7 +96,7 @@ void Shardlow<D>::exchange(Dynamics<D>& dynamics, const Clock& clock,
     }
     if (free[i]) velocity[i] += (mu / mass) * change;
     if (free[j]) velocity[j] -= (mu / mass) * change;
-    const Vec<D> first = start[i] - start[j];
+    const Vec<D> first = network.slip(k, start);
     const double zeta = network.zeta_par[k] - network.zeta_perp[k];
     edge_force[k] =
         (mu / clock.dt) * change + zeta * dot(first, e) * e + network.zeta_perp[k] * first;
@@ -139,10 +139,11 @@ const StepRecord<D>& Shardlow<D>::step(Dynamics<D>& dynamics, const Clock& clock
   }
   kick(dynamics, 0.5 * clock.dt, velocity);
   record.v_mid = velocity;
-  record.alarm_crossings += dynamics.move(record.v_mid, clock.dt);
+  record.alarm_crossings += dynamics.move(record.v_mid, clock.dt, clock.time());
   begun_ = true;
   std::vector<double> q;
   dynamics.dofs().gather({}, velocity, q);
+  dynamics.cross_faces(q);
   dynamics.set_end_velocity(record.start, q);
   return record;
 }

@@ -18,6 +18,8 @@ namespace {
 constexpr std::int64_t chunk_cells = 64;
 // Entries a kernel may read, or write, beyond the last one.
 constexpr std::size_t spare = 64;
+// Cells around a cell; across a sliding face four along the flow.
+constexpr std::size_t most_runs = 36;
 
 template <int D>
 kernels::PairSearchKernels::Search* search_kernel() {
@@ -52,7 +54,7 @@ std::array<Neighbour, 3> neighbours(std::int64_t k, std::int64_t n, bool periodi
 // Everything around a cell, as few runs of particles: neighbours along x follow each other in memory.
 template <int D>
 int candidate_runs(const CellList<D>& cells, const Box<D>& box, std::int64_t cell,
-                   std::array<kernels::CandidateRun, 27>& runs) {
+                   std::array<kernels::CandidateRun, most_runs>& runs) {
   struct Line {
     std::int64_t first;  // number of its cell at x = 0
     double shift[3];
@@ -95,6 +97,85 @@ int candidate_runs(const CellList<D>& cells, const Box<D>& box, std::int64_t cel
     }
   }
   return n_runs;
+}
+
+// A cell as it is seen from another one.
+struct SeenCell {
+  std::int64_t cell;  // number
+  double shift[3];
+};
+
+// The same along one direction: adds the cells first <= k <= last of n, those outside as images.
+void add_line(const SeenCell& from, std::int64_t first, std::int64_t last, std::int64_t n,
+              std::int64_t stride, std::size_t c, bool periodic, double length,
+              std::vector<SeenCell>& out) {
+  for (std::int64_t k = first; k <= last; ++k) {
+    const std::int64_t image = k >= 0 ? k / n : -((n - 1 - k) / n);
+    if (image != 0 && !periodic) continue;
+    SeenCell cell = from;
+    cell.cell += (k - image * n) * stride;
+    cell.shift[c] += static_cast<double>(image) * length;
+    out.push_back(cell);
+  }
+}
+
+// The runs of a cell at a face of the box whose images slide. Those cells lie anywhere along the flow, so that they overlap
+// with up to four.
+template <int D>
+int candidate_runs_across(const CellList<D>& cells, const Box<D>& box, std::int64_t cell,
+                          std::span<kernels::CandidateRun> runs) {
+  const auto flow = static_cast<std::size_t>(box.shear->flow),
+             gradient = static_cast<std::size_t>(box.shear->gradient);
+  std::array<std::int64_t, static_cast<std::size_t>(D)> place{}, stride{};
+  std::int64_t rest = cell, cells_before = 1;
+  for (std::size_t c = 0; c < D; ++c) {
+    place[c] = rest % cells.count()[c];
+    rest /= cells.count()[c];
+    stride[c] = cells_before;
+    cells_before *= cells.count()[c];
+  }
+  std::vector<SeenCell> seen, more;
+  add_line({0, {}}, place[gradient] - 1, place[gradient] + 1, cells.count()[gradient],
+           stride[gradient], gradient, true, box.size.x[gradient], seen);
+  // x comes last, as its cells follow each other in memory.
+  for (std::size_t c = D; c-- > 0;) {
+    if (c == gradient) continue;
+    more.clear();
+    for (SeenCell& from : seen) {
+      double cells_off = 0.0;
+      if (c == flow) {
+        const double offset = from.shift[gradient] / box.size.x[gradient] * box.offset;
+        from.shift[c] += offset;
+        cells_off = offset / box.size.x[c] * static_cast<double>(cells.count()[c]);
+      }
+      add_line(from, place[c] - 1 - static_cast<std::int64_t>(std::ceil(cells_off)),
+               place[c] + 1 - static_cast<std::int64_t>(std::floor(cells_off)), cells.count()[c],
+               stride[c], c, box.periodic[c], box.size.x[c], more);
+    }
+    seen.swap(more);
+  }
+  std::size_t n_runs = 0;
+  for (const SeenCell& s : seen) {
+    const std::int32_t begin = cells.begin_of(s.cell), end = cells.begin_of(s.cell + 1);
+    if (begin == end) continue;
+    auto* last = n_runs > 0 ? &runs[n_runs - 1] : nullptr;
+    if (last != nullptr && last->end == begin && std::equal(s.shift, s.shift + 3, last->shift)) {
+      last->end = end;
+    } else {
+      runs[n_runs++] = {begin, end, {s.shift[0], s.shift[1], s.shift[2]}};
+    }
+  }
+  return static_cast<int>(n_runs);
+}
+
+// The cell lies at a face that slides.
+template <int D>
+bool at_sliding_face(const CellList<D>& cells, const Box<D>& box, std::int64_t cell) {
+  if (!box.shear) return false;
+  const auto gradient = static_cast<std::size_t>(box.shear->gradient);
+  for (std::size_t c = 0; c < gradient; ++c) cell /= cells.count()[c];
+  const std::int64_t k = cell % cells.count()[gradient];
+  return k == 0 || k == cells.count()[gradient] - 1;
 }
 
 }  // namespace
@@ -177,7 +258,7 @@ void PairList<D>::search_cells(std::int64_t chunk, double reach) {
   bool twice = false;
   for (int c = 0; c < D; ++c) twice = twice || (box_.is_periodic(c) && box_.size[c] <= 2.0 * reach);
   auto* const search = search_kernel<D>();
-  std::array<kernels::CandidateRun, 27> runs;
+  std::array<kernels::CandidateRun, most_runs> runs;
   std::array<std::int32_t, 64> length;
   std::size_t used = 0;
   std::int64_t pairs = 0;
@@ -185,7 +266,9 @@ void PairList<D>::search_cells(std::int64_t chunk, double reach) {
   for (std::int64_t cell = chunk * chunk_cells; cell < end; ++cell) {
     const std::int32_t last = cells_.begin_of(cell + 1);
     if (cells_.begin_of(cell) == last) continue;
-    const int n_runs = candidate_runs(cells_, box_, cell, runs);
+    const int n_runs = at_sliding_face(cells_, box_, cell)
+                           ? candidate_runs_across<D>(cells_, box_, cell, runs)
+                           : candidate_runs(cells_, box_, cell, runs);
     std::int64_t candidates = 0;
     for (int r = 0; r < n_runs; ++r)
       candidates += runs[static_cast<std::size_t>(r)].end - runs[static_cast<std::size_t>(r)].begin;

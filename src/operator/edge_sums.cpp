@@ -60,13 +60,19 @@ void add_edges(const PairNetwork<D>& network, bool opposite, const Value& value,
   add_bonds(network, opposite, value, sum);
 }
 
+template <int D>
+Vec<D> slip_of(const PairNetwork<D>& network, std::size_t k, std::span<const Vec<D>> velocity) {
+  return velocity[static_cast<std::size_t>(network.i[k])] -
+         velocity[static_cast<std::size_t>(network.j[k])];
+}
+
 // Force on i of the stiffness of edge k.
 template <int D>
 Vec<D> spring_of(const PairNetwork<D>& network, std::size_t k, std::span<const Vec<D>> velocity) {
-  const Vec<D> slip = velocity[static_cast<std::size_t>(network.i[k])] -
-                      velocity[static_cast<std::size_t>(network.j[k])];
+  const Vec<D> slip = slip_of(network, k, velocity);
   return -std::max(network.k_c[k], 0.0) * dot(slip, network.e[k]) * network.e[k];
 }
+
 }  // namespace
 
 template <int D>
@@ -86,7 +92,16 @@ template <int D>
 void add_friction_forces(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
                          std::vector<Vec<D>>& force) {
   add_edges(
-      network, true, [&](std::size_t k) { return friction_of(network, k, velocity); }, force);
+      network, true,
+      [&](std::size_t k) { return friction_of(network, k, slip_of(network, k, velocity)); }, force);
+}
+
+template <int D>
+void add_sliding_friction(const PairNetwork<D>& network, std::vector<Vec<D>>& force) {
+  if (network.slip_0.empty()) return;
+  add_edges(
+      network, true, [&](std::size_t k) { return friction_of(network, k, network.slip_0[k]); },
+      force);
 }
 
 template <int D>
@@ -97,7 +112,8 @@ void add_known_friction(const PairNetwork<D>& network, std::span<const std::int3
       const auto k = static_cast<std::size_t>(edge);
       const double sign = network.i[k] == p ? -1.0 : 1.0;
       const std::int32_t other = network.i[k] == p ? network.j[k] : network.i[k];
-      force[static_cast<std::size_t>(other)] += sign * friction_of(network, k, velocity);
+      force[static_cast<std::size_t>(other)] +=
+          sign * friction_of(network, k, slip_of(network, k, velocity));
     }
 }
 
@@ -149,6 +165,7 @@ void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian
   template void add_conservative_forces<D>(const PairNetwork<D>&, std::vector<Vec<D>>&);         \
   template void add_friction_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,           \
                                        std::vector<Vec<D>>&);                                    \
+  template void add_sliding_friction<D>(const PairNetwork<D>&, std::vector<Vec<D>>&);            \
   template void add_known_friction<D>(const PairNetwork<D>&, std::span<const std::int32_t>,      \
                                       std::span<const Vec<D>>, std::vector<Vec<D>>&);            \
   template void add_spring_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,             \

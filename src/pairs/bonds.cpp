@@ -142,11 +142,12 @@ void BondedModel<D>::write_bond(const Bond& bond, double half_box, const Box<D>&
   network.j[k] = static_cast<std::int32_t>(j);
   network.e[k] = r > 0.0 ? (1.0 / r) * d : overlap_direction<D>(bond.i, bond.j);
   network.r[k] = r;
-  network.u[k] = t.u;
+  network.u.set(k, t.u);
   network.f_c[k] = t.f_c;
-  network.k_c[k] = t.k_c;
-  network.zeta_par[k] = network.zeta_perp[k] = 0.0;
-  network.kT[k] = t.kT;
+  network.k_c.set(k, t.k_c);
+  network.zeta_par[k] = 0.0;
+  network.zeta_perp.set(k, 0.0);
+  network.kT.set(k, t.kT);
 }
 
 template <int D>
@@ -159,13 +160,13 @@ void BondedModel<D>::exclude(const Particles<D>& particles, PairNetwork<D>& netw
     const auto at = std::lower_bound(begin, end, static_cast<std::int32_t>(high));
     if (at == end || *at != static_cast<std::int32_t>(high)) continue;
     const auto k = static_cast<std::size_t>(at - network.j.begin());
-    network.u[k] = network.f_c[k] = network.k_c[k] = 0.0;
-    if (bond.p.exclude == BondExclusion::all) network.zeta_par[k] = network.zeta_perp[k] = 0.0;
+    network.f_c[k] = 0.0;
+    network.u.set(k, 0.0);
+    network.k_c.set(k, 0.0);
+    if (bond.p.exclude != BondExclusion::all) continue;
+    network.zeta_par[k] = 0.0;
+    network.zeta_perp.set(k, 0.0);
   }
-  // They were written here: nothing may take them for constant the next time.
-  for (auto* column : {&network.constant_u, &network.constant_f_c, &network.constant_k_c,
-                       &network.constant_zeta_perp})
-    column->vary();
 }
 
 template <int D>

@@ -26,10 +26,19 @@ struct Differences {
     ++size;
   }
   // Of the nearest images; the last vector is filled up with copies of the last pair.
-  void close(const kernels::EdgeKernels& kernel, const kernels::Images& images) {
+  void close(const kernels::EdgeKernels& kernel, const kernels::Images& images, const Box<D>& box) {
+    if (box.shear) slide(box);
     for (std::size_t k = size; k % 8 != 0; ++k)
       for (std::size_t c = 0; c < D; ++c) d[c][k] = d[c][size - 1];
     kernel.separations(D, images, static_cast<int>(size), column, square);
+  }
+  // The offset of what is seen across a sliding face, before Box::separation's other steps.
+  void slide(const Box<D>& box) {
+    double* const along = d[static_cast<std::size_t>(box.shear->flow)];
+    const double* const across = d[static_cast<std::size_t>(box.shear->gradient)];
+    const double half = 0.5 * box.size[box.shear->gradient];
+    for (std::size_t k = 0; k < size; ++k)
+      along[k] -= across[k] > half ? box.offset : across[k] < -half ? -box.offset : 0.0;
   }
 };
 
@@ -47,7 +56,8 @@ class Writer {
         positions_(positions),
         particles_(particles),
         fill_(fill),
-        network_(network) {
+        network_(network),
+        box_(box) {
     for (std::size_t c = 0; c < D; ++c) {
       images_.length[c] = box.size.x[c];
       images_.half[c] =
@@ -71,6 +81,7 @@ class Writer {
       });
     }
     network_.index_rows();
+    write_slips();
   }
 
  private:
@@ -100,7 +111,7 @@ class Writer {
       pairs.size = 0;
       for (const std::int32_t q : some)
         pairs.add(positions_[p], positions_[static_cast<std::size_t>(q)]);
-      pairs.close(kernel_, images_);
+      pairs.close(kernel_, images_, box_);
       for (std::size_t l = 0; l < some.size(); ++l) {
         // Not between two of known velocity, nor inside a body.
         const std::int32_t a = particles_.group[p];
@@ -144,7 +155,7 @@ class Writer {
 
   // Completes the edges from `done` on, and moves it.
   int flush(Differences<D>& pairs, std::size_t& done) {
-    pairs.close(kernel_, images_);
+    pairs.close(kernel_, images_, box_);
     int overlaps = 0;
     const int outside =
         kernel_.directions(D, static_cast<int>(pairs.size), pairs.column, pairs.square, reach2_,
@@ -161,6 +172,18 @@ class Writer {
     return outside;
   }
 
+  void write_slips() {
+    network_.slip_0.resize(box_.shear ? network_.i.size() : 0);
+    if (!box_.shear) return;
+    parallel_for(network_.size(), [&](std::int64_t edge) {
+      const auto k = static_cast<std::size_t>(edge);
+      const Vec<D> d = positions_[static_cast<std::size_t>(network_.i[k])] -
+                       positions_[static_cast<std::size_t>(network_.j[k])];
+      network_.slip_0[k] = Vec<D>{};
+      network_.slip_0[k][box_.shear->flow] = -box_.images_up(d) * box_.sliding;
+    });
+  }
+
   const kernels::EdgeKernels& kernel_;
   const PairList<D>& list_;
   kernels::Images images_{};
@@ -169,6 +192,7 @@ class Writer {
   const Particles<D>& particles_;
   const Fill& fill_;
   PairNetwork<D>& network_;
+  const Box<D>& box_;
   std::vector<std::int64_t> candidates_;  // where each row of the list begins
   std::vector<std::int32_t> contacts_;    // pairs of each row that are edges
   std::vector<int> outside_;

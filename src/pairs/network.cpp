@@ -23,6 +23,7 @@ void PairNetwork<D>::resize(std::int64_t edges) {
   resize_one(r);
   resize_one(f_c);
   resize_one(zeta_par);
+  if (!slip_0.empty()) resize_one(slip_0);
   for (Column* column : {&u, &k_c, &zeta_perp, &kT}) column->resize(n);
 }
 
@@ -97,7 +98,7 @@ std::int64_t PairNetwork<D>::bytes() const {
   constexpr std::size_t per_edge = 2 * sizeof(std::int32_t) + sizeof(Vec<D>) + 3 * sizeof(double);
   std::int64_t columns = 0;
   for (const Column* column : {&u, &k_c, &zeta_perp, &kT}) columns += column->bytes();
-  return columns + static_cast<std::int64_t>(i.size() * per_edge +
+  return columns + static_cast<std::int64_t>(i.size() * per_edge + slip_0.size() * sizeof(Vec<D>) +
                                              (edge.size() + scratch.size() + next.size()) *
                                                  sizeof(std::int32_t) +
                                              (start.size() + first.size()) * sizeof(std::int64_t));

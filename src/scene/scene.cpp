@@ -17,9 +17,9 @@ Scene<D>::Scene(SceneSettings<D> settings)
                             settings_.seed, particles_);
   place_fluid(settings_, fluid_low(), fluid_high(), particles_);
   relax(settings_.box, *model_, *this, settings_.relax_sweeps, particles_);
-  for (std::size_t b = 0; b < body_kind_.size() && conserves_momentum(); ++b)
-    counter_force_ -= 1.0 / static_cast<double>(particles_.free_count()) * body_load(b, 0.0).force;
   draw_velocities(settings_.seed, largest_kT(), settings_.mass, conserves_momentum(), particles_);
+  for (std::size_t i = 0; i < particles_.end_velocity.size() && settings_.box.shear; ++i)
+    particles_.end_velocity[i] += settings_.box.flow_velocity(particles_.position[i]);
 }
 
 template <int D>

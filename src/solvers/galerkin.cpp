@@ -73,7 +73,7 @@ class Elements {
   void place_nodes() {
     positions_.resize(4 * resistance_.nodes());
     parallel_for(resistance_.nodes(), [&](std::int64_t n) {
-      const Vec<D> r = position_of(resistance_, static_cast<std::size_t>(n)) - shape_.low;
+      const Vec<D> r = grid_position(resistance_, static_cast<std::size_t>(n)) - shape_.low;
       for (int c = 0; c < 4; ++c)
         positions_.data()[4 * n + c] =
             c < D ? static_cast<float>(r[c < D ? c : 0] * shape_.per_length[c < D ? c : 0]) : 0.0F;
@@ -144,6 +144,11 @@ void Elements<D>::add_to(GridOperator<D>& a) const {
 }  // namespace
 
 template <int D>
+Vec<D> grid_position(const Resistance<D>& resistance, std::size_t node) {
+  return resistance.box().straightened(position_of(resistance, node));
+}
+
+template <int D>
 GridPosition<D> locate(const GridShape<D>& shape, const double* position) {
   GridPosition<D> at;
   for (std::size_t c = 0; c < D; ++c) {
@@ -190,6 +195,8 @@ GridOperator<D> galerkin(const Resistance<D>& resistance, const GridShape<D>& sh
   return a;
 }
 
+template Vec<2> grid_position<2>(const Resistance<2>&, std::size_t);
+template Vec<3> grid_position<3>(const Resistance<3>&, std::size_t);
 template GridPosition<2> locate<2>(const GridShape<2>&, const double*);
 template GridPosition<3> locate<3>(const GridShape<3>&, const double*);
 template double friction_range<2>(const Resistance<2>&);

@@ -78,7 +78,7 @@ void Multilevel<D>::place_nodes(const Resistance<D>& resistance, const SlicedRow
       float* const out = place_.data() + floats_per_place * place;
       GridPosition<D> at{};
       if (node >= 0)
-        at = locate(shape, &resistance.positions()[static_cast<std::size_t>(node) * D]);
+        at = locate(shape, grid_position(resistance, static_cast<std::size_t>(node)).x.data());
       for (std::size_t c = 0; c < D; ++c) out[c] = at.in_cell[c];
       const std::int64_t base = shape.place(at.cell) * SlicedRows<D>::stride;
       out[3] = std::bit_cast<float>(static_cast<std::int32_t>(base));

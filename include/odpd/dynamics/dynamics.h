@@ -75,14 +75,14 @@ class Dynamics {
   }
   /// Brings memory into spatial order when this step is due for it (a function of the step number alone).
   void reorder_if_due(std::int64_t step);
-  /// Fills position, edges and forces of a stage at the given positions and time. Throws SolverError for a position
-  /// that is not finite.
+  /// Fills position, edges and forces of a stage at the given positions and time; with shear the positions may have left
+  /// the box since the step's start. Throws SolverError for a position that is not finite.
   void evaluate(std::span<const Vec<D>> positions, double time, Stage<D>& stage);
   /// Draws F_B of the stage's edges and returns xi = P^T F_B, with the noise of the drag (zero, and nothing drawn, at
   /// kT = 0).
   Unknowns draw_noise(const Stage<D>& stage, std::int64_t step, double dt,
                       std::vector<Vec<D>>& edge_noise);
-  /// P^T (F_C + F_ext - R v_known) at the stage.
+  /// P^T (F_C + F_ext - R v_known) at the stage, with friction by sliding images as a part of the last.
   Unknowns force(const Stage<D>& stage);
   /// P^T R P q at the stage: friction among the particles, without the drag.
   Unknowns friction(const Stage<D>& stage, const Unknowns& q);
@@ -97,7 +97,8 @@ class Dynamics {
   const System& assemble(const Stage<D>& stage, const StepWeights& weights);
   /// Solves A q = load for the stage's velocities. `guess` in, answer out. With mass or drag and nothing of known
   /// velocity, the mean of the answer is set to what momentum balance says, to rounding. Throws SolverError when the
-  /// solver did not converge or a velocity is not finite.
+  /// solver did not converge or a velocity is not finite. With shear and nothing else to fix it, the mean of the answer is
+  /// that of the sheared flow.
   void solve(Stage<D>& stage, const Unknowns& load, const StepWeights& weights, Unknowns& guess);
 
   /// M = 2 m/dt.
@@ -112,13 +113,15 @@ class Dynamics {
   /// P q + the stage's known velocities.
   std::vector<Vec<D>> velocities(const Stage<D>& stage, const Unknowns& q);
 
-  /// position + dt velocity, wrapped; a particle that moves further than half the box throws, as in `move`.
+  /// position + dt velocity, wrapped (with shear by `evaluate` only); a particle that moves further than half the box throws, as in `move`.
   /// Adds the mirror's catches to `crossings`.
   std::vector<Vec<D>> displaced(const std::vector<Vec<D>>& velocity, double dt,
                                 std::int64_t& crossings);
-  /// Moves the particles by dt velocity and remembers it; returns the mirror's catches. Throws SolverError when a
-  /// particle moves further than half the box in one step.
-  std::int64_t move(const std::vector<Vec<D>>& velocity, double dt);
+  /// Moves the particles by dt velocity from time t on and remembers it; returns the mirror's catches. Throws SolverError
+  /// when a particle moves further than half the box in one step.
+  std::int64_t move(const std::vector<Vec<D>>& velocity, double dt, double t);
+  /// After `move`: velocities q of the step become those of the images that are now in the box.
+  void cross_faces(Unknowns& q);
 
   /// R on the sites: free particles and constituents.
   const Resistance<D>& resistance() const { return resistance_.sites(); }
@@ -132,6 +135,9 @@ class Dynamics {
   const SolverStatistics& statistics() const { return statistics_; }
 
  private:
+  void wrap_sheared(Stage<D>& stage) const;
+  void refer_slips_to_start(Stage<D>& stage) const;
+  void add_mean_flow(const Stage<D>& stage, Unknowns& q);
   void check_paths(const std::vector<Vec<D>>& velocity, double dt) const;
   std::vector<Vec<D>> arms_at(std::span<const Vec<D>> positions);
   void place_arms(double time, Stage<D>& stage);
@@ -152,6 +158,8 @@ class Dynamics {
   PairList<D> list_;
   std::unique_ptr<DofMap<D>> dofs_;
   RigidResistance<D> resistance_;
+  std::vector<Vec<D>>
+      faces_crossed_;  // with shear: velocity that each particle lost in the last `move`
   PhaseSeconds phases_;
   SolverStatistics statistics_;
 };

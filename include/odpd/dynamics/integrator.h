@@ -84,6 +84,8 @@ IntegratorSettings read_integrator(const Config& config);
 std::string mass_objection(const std::string& name, double mass);
 /// Why this integrator cannot move rigid bodies of unknown motion; empty when it can.
 std::string bodies_objection(const std::string& name);
+/// Why this integrator cannot run under [shear], with the remedy; empty when it can.
+std::string shear_objection(const std::string& name);
 /// Throws ConfigError for an unknown name, listing the names.
 template <int D>
 std::unique_ptr<Integrator<D>> make_integrator(const IntegratorSettings& settings);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "odpd/geometry/box.h"
 #include "odpd/pairs/network.h"
 #include "odpd/solvers/solver.h"
 
@@ -12,12 +13,16 @@ namespace odpd {
 template <int D>
 struct Stage {
   double time = 0.0;
+  Box<D> box;                    ///< with its images where they are at `time`
   std::vector<Vec<D>> position;  ///< inside the box along periodic directions
   std::vector<Vec<D>> arms;  ///< of constituents of bodies, zero for others; empty without bodies
   PairNetwork<D> network;    ///< edges at `position`
   std::vector<Vec<D>> potential_force;  ///< conservative pair forces and wall potentials
   std::vector<Vec<D>> driving_force;    ///< body force
   std::vector<Vec<D>> velocity;         ///< solved (free) or prescribed (known)
+  /// With shear: boxes along the gradient that each particle has crossed since the step's start. Its velocity, and
+  /// network.slip_0 with it, is still that of the image that it was then.
+  std::vector<std::int32_t> crossed;
   SolveReport report;
 };
 

@@ -61,6 +61,11 @@ class PairList {
   bool update(std::span<const Vec<D>> positions);
   /// Forgets the list: particles were reordered, added or taken away.
   void invalidate() { reference_.clear(); }
+  /// The same box with its sliding images elsewhere; the list is then searched anew.
+  void slide(const Box<D>& box) {
+    if (box.offset != box_.offset) invalidate();
+    box_ = box;
+  }
 
   std::int64_t rows() const { return static_cast<std::int64_t>(row_.size()); }
   std::int64_t pairs() const { return pairs_; }

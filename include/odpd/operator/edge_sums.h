@@ -9,13 +9,10 @@
 
 namespace odpd {
 
-/// Friction on i of edge k, -Z (v_i - v_j), with the physical zeta. Everything that needs the friction of one pair (forces,
-/// stress, wall force, heat) takes it from here.
+/// Friction on i of edge k, -Z slip, with the physical zeta. Everything that needs the friction of one pair (forces, stress,
+/// heat) takes it from here.
 template <int D>
-inline Vec<D> friction_of(const PairNetwork<D>& network, std::size_t k,
-                          std::span<const Vec<D>> velocity) {
-  const Vec<D> slip = velocity[static_cast<std::size_t>(network.i[k])] -
-                      velocity[static_cast<std::size_t>(network.j[k])];
+inline Vec<D> friction_of(const PairNetwork<D>& network, std::size_t k, const Vec<D>& slip) {
   const double along = dot(slip, network.e[k]);
   Vec<D> force = (network.zeta_perp[k] - network.zeta_par[k]) * along * network.e[k];
   if (network.transverse) force -= network.zeta_perp[k] * slip;
@@ -31,10 +28,14 @@ void add_edge_forces(const PairNetwork<D>& network, std::span<const Vec<D>> edge
 template <int D>
 void add_conservative_forces(const PairNetwork<D>& network, std::vector<Vec<D>>& force);
 
-/// force[p] -= (R v)_p, friction with the physical zeta for the velocities of all particles.
+/// force[p] -= (R v)_p, friction with the physical zeta for the velocities of all particles, without that of slip_0.
 template <int D>
 void add_friction_forces(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
                          std::vector<Vec<D>>& force);
+
+/// force[p] -= friction by the network's slip_0 alone (nothing where there is none).
+template <int D>
+void add_sliding_friction(const PairNetwork<D>& network, std::vector<Vec<D>>& force);
 
 /// The same on the partners of the particles `known` (places in memory, ascending), for the motion of those alone: `velocity`
 /// of all others is zero. Costs as much as they have edges.

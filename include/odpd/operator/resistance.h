@@ -45,6 +45,9 @@ class Resistance : public System {
                std::span<const Vec<D>> positions, double shift, double stiffness_time = 0.0,
                double bond_time = 0.0);
 
+  /// The same box with its sliding images elsewhere.
+  void slide(const Box<D>& box) { box_ = box; }
+
   int block_size() const override { return D; }
   std::int64_t nodes() const override { return nodes_; }
   void apply(std::span<const double> x, std::span<double> y) const override;

@@ -15,6 +15,8 @@ class RigidResistance : public System {
   explicit RigidResistance(const Box<D>& box, bool hold_centre_of_mass = false)
       : sites_(box, hold_centre_of_mass) {}
 
+  /// As Resistance::slide.
+  void slide(const Box<D>& box) { sites_.slide(box); }
   /// As Resistance::rebuild; `arms` as for DofMap, which must outlive the use of this operator.
   void rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs, const Particles<D>& particles,
                std::span<const Vec<D>> positions, std::span<const Vec<D>> arms, double shift,

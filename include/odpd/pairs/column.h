@@ -18,6 +18,10 @@ class Column {
   void fill(double value);
   /// From now on a number for each edge, at first that of all. Safe on several threads where it varies already.
   std::span<double> each();
+  /// One edge's number; the others keep theirs.
+  void set(std::size_t k, double value) {
+    if ((*this)[k] != value) each()[k] = value;
+  }
   /// With some room more where it varies: the number of edges changes by little from one configuration to the next.
   void resize(std::size_t size);
 

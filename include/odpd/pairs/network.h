@@ -3,7 +3,7 @@
 //
 //   R = sum_edges J^T Z J,  Z = zeta_par e e^T + zeta_perp (I - e e^T),  F_B = sum_edges J^T sqrt(2 kT Z/dt) w,
 //
-// with J the map from the two velocities to the slip v_i - v_j.
+// with J the map from the two velocities to the slip v_i - v_j. The whole slip of an edge is v_i - v_j + slip_0.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -35,6 +35,8 @@ struct PairNetwork {
   std::vector<double> f_c, zeta_par;
   Column u, k_c, zeta_perp, kT;
   bool transverse = false;  ///< some zeta_perp is not zero
+  /// Relative velocity of the images that interact: the sliding ones of Lees-Edwards (length/time). Empty without shear.
+  std::vector<Vec<D>> slip_0;
 
   // The edges of each particle, in fixed order: edge[start[p]] .. edge[start[p+1]-1].
   std::vector<std::int64_t> start;
@@ -49,6 +51,12 @@ struct PairNetwork {
     const auto b = static_cast<std::size_t>(start[static_cast<std::size_t>(particle)]);
     const auto n = static_cast<std::size_t>(start[static_cast<std::size_t>(particle) + 1]) - b;
     return std::span<const std::int32_t>(edge).subspan(b, n);
+  }
+  /// What friction sees on edge k where the particles have these velocities.
+  Vec<D> slip(std::size_t k, std::span<const Vec<D>> velocity) const {
+    const Vec<D> v =
+        velocity[static_cast<std::size_t>(i[k])] - velocity[static_cast<std::size_t>(j[k])];
+    return slip_0.empty() ? v : v + slip_0[k];
   }
   /// None of them is a bond at first.
   void resize(std::int64_t edges);

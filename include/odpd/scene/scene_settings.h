@@ -78,7 +78,7 @@ struct SceneSettings {
   std::vector<std::int32_t> start_species;  ///< one per start position
   std::int64_t relax_sweeps = 100;          ///< of overlap removal before the run
 
-  /// Something drives a flow: a force, a moving wall, a body that is moved or pushed.
+  /// Something drives a flow: a force, a moving wall, a body that is moved or pushed, shear.
   bool driven() const;
   /// Walls, or bodies of known motion, hold the fluid and take up a net force.
   bool held() const;
@@ -98,7 +98,7 @@ struct SceneSettings {
   double fluid_volume() const;
 };
 
-/// Reads [box], [fluid], [[species]], [[pair]], [[wall]], [[body]], [body_force], [start] and `seed`. Throws ConfigError for
+/// Reads [box], [fluid], [[species]], [[pair]], [[wall]], [[body]], [shear], [body_force], [start] and `seed`. Throws ConfigError for
 /// values out of range and for contradictions (both gamma and sigma, a wall in a periodic direction, ...).
 template <int D>
 SceneSettings<D> read_scene_settings(const Config& config);

@@ -16,6 +16,11 @@ struct GridPosition {
   std::array<float, static_cast<std::size_t>(D)> in_cell;
 };
 
+/// A node's position as the grid sees it: along the edges of the cell that a shear has tilted, so that the grid is tilted
+/// with it and stays periodic.
+template <int D>
+Vec<D> grid_position(const Resistance<D>& resistance, std::size_t node);
+
 template <int D>
 GridPosition<D> locate(const GridShape<D>& shape, const double* position);
 

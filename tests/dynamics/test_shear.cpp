@@ -1,0 +1,244 @@
+// Lees-Edwards shear: nothing may depend on where the box is cut, and without a rate it is the periodic box.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "odpd/dynamics/integrator.h"
+#include "odpd/operator/edge_sums.h"
+#include "odpd/pairs/dpd.h"
+#include "support/dimensions.h"
+#include "support/points.h"
+
+namespace odpd {
+namespace {
+
+template <typename T>
+class ShearedDynamics : public testing::Test {};
+TYPED_TEST_SUITE(ShearedDynamics, support::Dimensions);
+
+struct ShearedToySettings {
+  std::optional<Shear> shear = Shear{0, 1, 2.0, 0.0, 0.0};
+  DpdParameters fluid{};
+  double mass = 0.0;
+  double cut = 0.0;  ///< all positions are moved by so much along the gradient
+  double edge = 3.2;
+  std::size_t count = 0;  ///< 0: of density 4
+  std::int64_t reorder_every = 7;
+  std::string preconditioner = "auto";
+};
+
+template <int D>
+struct ShearedToy {
+  explicit ShearedToy(const ShearedToySettings& s) : model(1, {s.fluid}) {
+    for (int c = 0; c < D; ++c) box.size[c] = s.edge + 0.4 * c;
+    box.periodic.fill(true);
+    box.shear = s.shear;
+    box = box.at(0.0);
+    const auto count = s.count > 0 ? s.count : static_cast<std::size_t>(4.0 * box.volume());
+    for (Vec<D> r : support::random_points<D>(Vec<D>{}, box.size, count, 9)) {
+      if (s.shear) r[s.shear->gradient] += s.cut;
+      box.wrap(r);
+      particles.add(r, 0, 0);
+    }
+    DynamicsSettings settings;
+    settings.mass = s.mass;
+    settings.kT = s.fluid.kT;
+    settings.reorder_every = s.reorder_every;
+    SolverOptions solver{.name = "pcg", .tolerance = 1e-12};
+    solver.preconditioner = s.preconditioner;
+    dynamics =
+        std::make_unique<Dynamics<D>>(box, particles, model, none, make_solver(solver), settings);
+    for (std::size_t i = 0; i < particles.end_velocity.size(); ++i)
+      particles.end_velocity[i] = box.flow_velocity(particles.position[i]);
+  }
+
+  std::vector<Vec<D>> by_id(const std::vector<Vec<D>>& v) const {
+    std::vector<Vec<D>> sorted(v.size());
+    for (std::size_t i = 0; i < v.size(); ++i)
+      sorted[static_cast<std::size_t>(particles.id[i])] = v[i];
+    return sorted;
+  }
+  void run(Integrator<D>& integrator, Clock clock) {
+    for (; !clock.finished(); clock.advance()) integrator.step(*dynamics, clock);
+  }
+
+  Box<D> box;
+  Particles<D> particles;
+  DpdModel<D> model;
+  NoSurroundings<D> none;
+  std::unique_ptr<Dynamics<D>> dynamics;
+};
+
+// Largest difference between the paths of two runs, but for a motion of all particles as one. `crossed`: how many went
+// through the sliding faces.
+template <int D>
+double difference_of_paths(const ShearedToySettings& settings, const std::string& scheme,
+                           const Clock& clock, double cut, int& crossed) {
+  ShearedToySettings moved = settings;
+  moved.cut = cut;
+  ShearedToy<D> a(settings), b(moved);
+  const auto step_a = make_integrator<D>(scheme), step_b = make_integrator<D>(scheme);
+  a.run(*step_a, clock);
+  b.run(*step_b, clock);
+  const Box<D> box = a.box.at(static_cast<double>(clock.total_steps) * clock.dt);
+  const auto r = a.by_id(a.particles.position), s = b.by_id(b.particles.position);
+  double most = 0.0;
+  for (std::size_t i = 1; i < r.size(); ++i) {
+    const Vec<D> d = box.separation(r[i], r[0]), e = box.separation(s[i], s[0]);
+    // Only as close as nearest images are.
+    if (norm(d) < 1.5) most = std::max(most, norm(d - e));
+  }
+  crossed = 0;
+  for (const ShearedToy<D>* toy : {&a, &b})
+    for (const auto& image : toy->particles.image)
+      crossed += image[static_cast<std::size_t>(box.shear->gradient)] != 0 ? 1 : 0;
+  return most;
+}
+
+TYPED_TEST(ShearedDynamics, PathsDoNotDependOnWhereTheBoxIsCut) {
+  constexpr int D = TypeParam::D;
+  struct Run {
+    const char* scheme;
+    double mass;
+  };
+  for (const Run& run :
+       {Run{"trapezoidal", 0.0}, Run{"midpoint", 0.0}, Run{"extrapolated", 0.0}, Run{"euler", 0.0},
+        Run{"trapezoidal", 1.0}, Run{"midpoint", 1.0}, Run{"extrapolated", 1.0}, Run{"setd", 1.0},
+        Run{"velocity-verlet", 1.0}, Run{"shardlow", 1.0}}) {
+    ShearedToySettings settings;
+    settings.mass = run.mass;
+    settings.shear->gradient = D - 1;
+    int crossed = 0;
+    const Clock clock{.dt = 0.015, .total_steps = 15};
+    // Shardlow's colours follow the order of memory.
+    if (std::string(run.scheme) == "shardlow") settings.reorder_every = 0;
+    // Rounding grows along the paths; a velocity of the wrong image would be off by 0.1.
+    EXPECT_LT(difference_of_paths<D>(settings, run.scheme, clock, 1.3, crossed), 1e-6)
+        << run.scheme << " mass " << run.mass;
+    EXPECT_GT(crossed, 3);
+  }
+}
+
+TYPED_TEST(ShearedDynamics, OscillationDependsOnTheCutOnlyByTheErrorOfTheStep) {
+  constexpr int D = TypeParam::D;
+  ShearedToySettings settings;
+  settings.fluid.kT = 0.0;
+  settings.shear->rate = 3.0;
+  settings.shear->frequency = 5.0;
+  int crossed = 0;
+  const double coarse = difference_of_paths<D>(settings, "trapezoidal",
+                                               {.dt = 0.01, .total_steps = 40}, 1.3, crossed);
+  const double fine = difference_of_paths<D>(settings, "trapezoidal",
+                                             {.dt = 0.0025, .total_steps = 160}, 1.3, crossed);
+  EXPECT_LT(coarse, 0.02);
+  EXPECT_LT(fine, coarse / 10.0) << "second order: a factor of 16";
+  EXPECT_GT(crossed, 3);
+}
+
+TYPED_TEST(ShearedDynamics, SlipsOfTheShearedFlowFollowFromTheSeparationsAlone) {
+  constexpr int D = TypeParam::D;
+  ShearedToySettings settings;
+  settings.shear = Shear{D - 1, 0, 0.7, 0.0, 0.0};
+  ShearedToy<D> toy(settings);
+  Stage<D> stage;
+  toy.dynamics->evaluate(toy.particles.position, 1.9, stage);
+  std::vector<Vec<D>> flow, bulk(stage.position.size()), force(stage.position.size());
+  for (const Vec<D>& r : stage.position) flow.push_back(stage.box.flow_velocity(r));
+  const PairNetwork<D>& n = stage.network;
+  ASSERT_EQ(n.slip_0.size(), n.e.size());
+  int across = 0;
+  for (std::size_t k = 0; k < n.e.size(); ++k) {
+    Vec<D> expected{};
+    expected[D - 1] = 0.7 * n.r[k] * n.e[k][0];
+    EXPECT_LT(norm(n.slip(k, flow) - expected), 1e-13);
+    across += n.slip_0[k] != Vec<D>{} ? 1 : 0;
+    const Vec<D> f = -n.zeta_par[k] * dot(expected, n.e[k]) * n.e[k];
+    bulk[static_cast<std::size_t>(n.i[k])] += f;
+    bulk[static_cast<std::size_t>(n.j[k])] -= f;
+  }
+  EXPECT_GT(across, 10);
+  add_friction_forces<D>(n, flow, force);
+  add_sliding_friction(n, force);
+  for (std::size_t i = 0; i < force.size(); ++i) EXPECT_LT(norm(force[i] - bulk[i]), 1e-11);
+}
+
+TYPED_TEST(ShearedDynamics, ForcesBalanceInBothStages) {
+  constexpr int D = TypeParam::D;
+  ShearedToySettings settings;
+  settings.shear->rate = 20.0;  // particles cross within the step
+  ShearedToy<D> toy(settings);
+  const auto integrator = make_integrator<D>("trapezoidal");
+  const auto& record = integrator->step(*toy.dynamics, Clock{.dt = 0.02, .total_steps = 1});
+  int crossed = 0;
+  for (const std::int32_t up : record.corrector.crossed) crossed += up != 0 ? 1 : 0;
+  EXPECT_GT(crossed, 0);
+  for (const Stage<D>* stage : {&record.start, &record.corrector}) {
+    std::vector<Vec<D>> force(stage->position.size());
+    add_edge_forces<D>(record.start.network, record.edge_noise, force);
+    add_conservative_forces(stage->network, force);
+    add_friction_forces<D>(stage->network, stage->velocity, force);
+    add_sliding_friction(stage->network, force);
+    for (const Vec<D>& f : force) EXPECT_LT(norm(f), 1e-8);
+  }
+}
+
+TYPED_TEST(ShearedDynamics, WithoutARateItIsThePeriodicBoxToTheBit) {
+  constexpr int D = TypeParam::D;
+  for (const char* scheme : {"trapezoidal", "midpoint", "extrapolated", "euler"})
+    for (const char* preconditioner : {"block-jacobi", "multilevel"}) {
+      ShearedToySettings settings;
+      settings.preconditioner = preconditioner;
+      settings.shear = Shear{1, 0, 0.0, 0.0, 0.0};
+      ShearedToy<D> sheared(settings);
+      settings.shear.reset();
+      ShearedToy<D> plain(settings);
+      const Clock clock{.dt = 0.01, .total_steps = 20};
+      const auto a = make_integrator<D>(scheme), b = make_integrator<D>(scheme);
+      sheared.run(*a, clock);
+      plain.run(*b, clock);
+      EXPECT_EQ(sheared.particles.position, plain.particles.position) << scheme;
+      EXPECT_EQ(sheared.particles.velocity, plain.particles.velocity) << scheme;
+      EXPECT_EQ(sheared.particles.image, plain.particles.image) << scheme;
+    }
+}
+
+// Slope of the velocities of a step over the gradient direction.
+template <int D>
+double slope_of(const StepRecord<D>& record) {
+  const Shear& shear = *record.start.box.shear;
+  double n = 0.0, y = 0.0, v = 0.0, yy = 0.0, yv = 0.0;
+  for (std::size_t i = 0; i < record.v_mid.size(); ++i) {
+    const double at = record.start.position[i][shear.gradient];
+    const double u = record.v_mid[i][shear.flow];
+    n += 1.0;
+    y += at;
+    v += u;
+    yy += at * at;
+    yv += at * u;
+  }
+  return (n * yv - y * v) / (n * yy - y * y);
+}
+
+TYPED_TEST(ShearedDynamics, TheMeanProfileHasTheRateAsItsSlope) {
+  constexpr int D = TypeParam::D;
+  ShearedToySettings settings;
+  settings.shear = Shear{D - 1, 0, 1.0, 0.0, 0.0};
+  settings.edge = D == 2 ? 5.0 : 4.0;
+  ShearedToy<D> toy(settings);
+  const auto integrator = make_integrator<D>("trapezoidal");
+  Clock clock{.dt = 0.02, .total_steps = 600};
+  std::vector<double> block(12, 0.0);
+  for (; !clock.finished(); clock.advance())
+    block[static_cast<std::size_t>(clock.step / 50)] +=
+        slope_of(integrator->step(*toy.dynamics, clock)) / 50.0;
+  // The first block is left out: it starts from random points.
+  double mean = 0.0, square = 0.0;
+  for (std::size_t k = 1; k < block.size(); ++k) mean += block[k] / 11.0;
+  for (std::size_t k = 1; k < block.size(); ++k) square += std::pow(block[k] - mean, 2);
+  const double error = std::sqrt(square / 110.0);
+  EXPECT_LT(error, 0.1);
+  EXPECT_NEAR(mean, 1.0, 4.0 * error) << "standard error " << error;
+}
+
+}  // namespace
+}  // namespace odpd
