@@ -131,6 +131,46 @@ void read_start_csv(SceneSettings<D>& scene) {
   }
 }
 
+// Columns i and j (particles of the start file, from 0), and if wanted H, r_0 and r_max.
+template <int D>
+void read_bonds_csv(SceneSettings<D>& scene) {
+  const std::string& file = scene.bonds_file;
+  const TextTable table = read_csv(file);
+  const auto column = [&](const char* name) {
+    return static_cast<std::size_t>(std::find(table.columns.begin(), table.columns.end(), name) -
+                                    table.columns.begin());
+  };
+  for (const char* name : {"i", "j"})
+    if (column(name) == table.columns.size())
+      throw ConfigError(
+          fmt::format("{}: there is no column '{}': a file of bonds needs i and j and, if wanted, "
+                      "H, r_0, r_max",
+                      file, name));
+  const auto particles = static_cast<double>(scene.start_positions.size());
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    const auto number = [&](const char* name, double otherwise) {
+      const std::size_t at = column(name);
+      return at == table.columns.size()
+                 ? otherwise
+                 : parse_number(file, table.line[row], name, table.rows[row][at]);
+    };
+    const auto particle = [&](const char* name) {
+      const double x = number(name, 0.0);
+      if (!(x >= 0.0 && x < particles && x == std::floor(x)))
+        throw ConfigError(
+            fmt::format("{}:{}: {} = {} is no particle of the start file, which are "
+                        "counted from 0 to {}",
+                        file, table.line[row], name, x, particles - 1.0));
+      return static_cast<std::int64_t>(x);
+    };
+    Bond bond{particle("i"), particle("j"), scene.file_bond};
+    bond.p.H = number("H", bond.p.H);
+    bond.p.r_0 = number("r_0", bond.p.r_0);
+    bond.p.r_max = number("r_max", bond.p.r_max);
+    scene.start_bonds.push_back(bond);
+  }
+}
+
 // Other programs may round the edges to single precision.
 template <int D>
 void check_box(const Frame& frame, const Box<D>& box, const std::string& file) {
@@ -229,20 +269,24 @@ void read_start_file(SceneSettings<D>& scene) {
   }
   if (scene.start_positions.empty())
     throw ConfigError(fmt::format("{}: there are no fluid particles in it", scene.start_file));
+  if (!scene.bonds_file.empty()) read_bonds_csv(scene);
 }
 
 std::string portable_case(const Config& config) {
-  const Config start = config.table("start");
-  if (!start.has("file")) return config.resolved();
-  const std::filesystem::path file = config.directory() / start.text("file");
-  std::string quoted;
-  for (const char letter : std::filesystem::absolute(file).lexically_normal().string()) {
-    if (letter == '"' || letter == '\\') quoted += '\\';
-    quoted += letter;
+  std::vector<std::string> absolute;
+  for (const char* table : {"start", "bonds"}) {
+    const Config entry = config.table(table);
+    if (!entry.has("file")) continue;
+    const std::filesystem::path file = config.directory() / entry.text("file");
+    std::string quoted;
+    for (const char letter : std::filesystem::absolute(file).lexically_normal().string()) {
+      if (letter == '"' || letter == '\\') quoted += '\\';
+      quoted += letter;
+    }
+    absolute.push_back(fmt::format("{}.file=\"{}\"", table, quoted));
   }
-  return Config::from_text(config.resolved(), "case.toml",
-                           {fmt::format("start.file=\"{}\"", quoted)})
-      .resolved();
+  if (absolute.empty()) return config.resolved();
+  return Config::from_text(config.resolved(), "case.toml", absolute).resolved();
 }
 
 std::vector<std::pair<std::string, std::string>> fixed_values(const Config& config) {
@@ -251,7 +295,7 @@ std::vector<std::pair<std::string, std::string>> fixed_values(const Config& conf
     const std::string& path = value.first;
     const auto in = [&](std::string_view table) { return path.rfind(table, 0) == 0; };
     if (path == "title" || path == "run.duration" || path == "run.blow_up" ||
-        path == "start.file" || path == "check")
+        path == "start.file" || path == "bonds.file" || path == "check")
       continue;
     if (in("run.until.")) continue;
     // Holding the centre of mass is another problem, not another solver.

@@ -40,6 +40,13 @@ std::string difference(const Config& saved, const Config& current) {
   return {};
 }
 
+// Identities i, j of each bond.
+std::vector<std::int64_t> bond_ends(const std::vector<Bond>& bonds) {
+  std::vector<std::int64_t> ends;
+  for (const Bond& bond : bonds) ends.insert(ends.end(), {bond.i, bond.j});
+  return ends;
+}
+
 template <int D>
 DynamicsSettings dynamics_of(DynamicsSettings settings, const Scene<D>& scene) {
   settings.mass = scene.settings().mass;
@@ -231,6 +238,7 @@ Frame Simulation<D>::frame() const {
     frame.periodic.push_back(scene_.box().is_periodic(c));
   }
   for (const SpeciesSettings& s : scene_.settings().species) frame.species_names.push_back(s.name);
+  frame.bonds = bond_ends(scene_.bonds());
   for (const std::int32_t index : particles.index_of_id()) {
     const auto i = static_cast<std::size_t>(index);
     frame.id.push_back(particles.id[i]);
@@ -268,6 +276,7 @@ void Simulation<D>::save(CheckpointWriter& out) const {
   run.write("solver_worst_residual", std::vector<double>{s.worst_residual});
   run.write_text("solver_problem", s.problem);
   run.write_text("instructions", std::string(isa_name(isa())));
+  if (!scene_.bonds().empty()) run.write("bonds", bond_ends(scene_.bonds()));
   dynamics_.solver().save(out.component("solver"));
   scene_.particles().save(out.component("particles"));
   integrator_->save(out.component("integrator"));
@@ -287,6 +296,9 @@ void Simulation<D>::load(CheckpointReader& in) {
         "the number of threads, "
         "nothing else",
         what));
+  if (!scene_.bonds().empty() && run.read_integers("bonds") != bond_ends(scene_.bonds()))
+    throw ConfigError(
+        "the checkpoint has other bonds than the file of [bonds] now: restore that file");
   const std::vector<std::int64_t> counts = run.read_integers("counts");
   clock_.step = counts.at(0);
   if (clock_.step > clock_.total_steps)

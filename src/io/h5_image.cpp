@@ -176,6 +176,13 @@ void H5Image::attribute(const std::string& path, const std::string& name,
                   {static_cast<std::int64_t>(values.size())});
 }
 
+void H5Image::reference(const std::string& path, const std::string& name,
+                        const std::string& target) {
+  hobj_ref_t value{};
+  check(H5Rcreate(&value, impl_->file.id(), target.c_str(), H5R_OBJECT, -1), target);
+  write_attribute(impl_->file.id(), path, name, H5T_STD_REF_OBJ, H5T_STD_REF_OBJ, &value, {});
+}
+
 void H5Image::group(const std::string& path) {
   if (H5Oexists_by_name(impl_->file.id(), path.c_str(), H5P_DEFAULT) > 0) return;
   const H5Handle links = link_properties();

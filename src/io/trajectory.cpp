@@ -87,6 +87,10 @@ void TrajectorySegments::open(const Frame& frame) {
   image_->write(group + "/species", frame.species, {count});
   image_->write(group + "/group", frame.group, {count});
   open_box(frame);
+  if (frame.bonds.empty()) return;
+  image_->write("/connectivity/bonds", frame.bonds,
+                {static_cast<std::int64_t>(frame.bonds.size() / 2), 2});
+  image_->reference("/connectivity/bonds", "particles_group", all);
 }
 
 void TrajectorySegments::open_box(const Frame& frame) {

@@ -152,9 +152,9 @@ void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian
   // At r = 0 the Laplacian of a pair that repels is infinite. Such an edge is left out: coincident
   // particles have measure zero, and one must not make an average infinite for good.
   const auto share = [&](std::size_t k) {
-    return network.f_c[k] != 0.0 && network.r[k] > 0.0
-               ? network.k_c[k] - (D - 1) * network.f_c[k] / network.r[k]
-               : 0.0;
+    const bool acts = network.f_c[k] != 0.0 || k >= static_cast<std::size_t>(network.pairs());
+    return acts && network.r[k] > 0.0 ? network.k_c[k] - (D - 1) * network.f_c[k] / network.r[k]
+                                      : 0.0;
   };
   add_edges(network, false, share, laplacian);
 }

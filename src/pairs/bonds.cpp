@@ -154,7 +154,8 @@ template <int D>
 void BondedModel<D>::exclude(const Particles<D>& particles, PairNetwork<D>& network) const {
   for (const Bond& bond : bonds_) {
     if (bond.p.exclude == BondExclusion::none) continue;
-    const auto [low, high] = std::minmax(place_of(bond.i, particles), place_of(bond.j, particles));
+    const auto [low, high] =
+        std::minmax({place_of(bond.i, particles), place_of(bond.j, particles)});
     const auto begin = network.j.begin() + network.first[low];
     const auto end = network.j.begin() + network.first[low + 1];
     const auto at = std::lower_bound(begin, end, static_cast<std::int32_t>(high));

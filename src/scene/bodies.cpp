@@ -17,9 +17,6 @@ double BodySettings<D>::radius() const {
   return most;
 }
 
-namespace {
-
-// A random direction, or an angle in 2D, turned as far as `u` (uniform numbers) says: uniform over all orientations.
 void turn_at_random(const std::array<double, 4>& u, Rotation<2>& orientation) {
   const Vec<2> angle{{2.0 * std::numbers::pi * u[0], 0.0}};
   orientation.advance(angle);
@@ -31,6 +28,8 @@ void turn_at_random(const std::array<double, 4>& u, Rotation<3>& orientation) {
   const std::array<double, 4> q{b * std::cos(t), a * std::sin(s), a * std::cos(s), b * std::sin(t)};
   orientation.set(q.data());
 }
+
+namespace {
 
 template <int D>
 struct Placer {

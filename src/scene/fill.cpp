@@ -12,6 +12,16 @@
 
 namespace odpd {
 
+template <int D>
+bool inside_a_body(const Box<D>& box, const Particles<D>& particles, const Vec<D>& r) {
+  return std::any_of(particles.bodies.begin(), particles.bodies.end(),
+                     [&](const RigidBody<D>& body) {
+                       const double distance = norm(box.separation(r, body.pose.centre));
+                       return std::any_of(body.frame.begin(), body.frame.end(),
+                                          [&](const Vec<D>& b) { return norm(b) > distance; });
+                     });
+}
+
 namespace {
 
 // Sites of a regular grid over [low, high), counts per direction.
@@ -53,17 +63,6 @@ std::vector<Vec<D>> lattice(const Vec<D>& low, const Vec<D>& high, std::int64_t 
   for (std::int64_t k = 0; k < count; ++k)
     chosen.push_back(all[static_cast<std::size_t>(k * sites / count)]);
   return chosen;
-}
-
-// Inside a body: nearer to its centre than its outermost constituent.
-template <int D>
-bool inside_a_body(const Box<D>& box, const Particles<D>& particles, const Vec<D>& r) {
-  return std::any_of(particles.bodies.begin(), particles.bodies.end(),
-                     [&](const RigidBody<D>& body) {
-                       const double distance = norm(box.separation(r, body.pose.centre));
-                       return std::any_of(body.frame.begin(), body.frame.end(),
-                                          [&](const Vec<D>& b) { return norm(b) > distance; });
-                     });
 }
 
 template <int D>
@@ -140,6 +139,29 @@ void check_start_positions(const SceneSettings<D>& settings) {
     }
 }
 
+// Of a start file, whose last particles are those of the molecules; where it gives species, they must be theirs.
+template <int D>
+void append_molecule_species(const SceneSettings<D>& settings, bool given,
+                             std::vector<std::int32_t>& species) {
+  auto next = species.size() - (given ? static_cast<std::size_t>(settings.molecule_beads()) : 0);
+  for (const MoleculeSettings<D>& m : settings.molecules)
+    for (std::int64_t n = 0; n < m.molecules(); ++n)
+      for (const std::int32_t wanted : m.species) {
+        if (!given) {
+          species.push_back(wanted);
+        } else if (species[next] != wanted) {
+          throw ConfigError(fmt::format(
+              "{}: particle {} has the species '{}', but it belongs to a [[molecule]] '{}', where "
+              "that is '{}': the last particles of a start file are those of the molecules, in "
+              "order",
+              settings.start_file, next,
+              settings.species[static_cast<std::size_t>(species[next])].name, m.name,
+              settings.species[static_cast<std::size_t>(wanted)].name));
+        }
+        ++next;
+      }
+}
+
 }  // namespace
 
 template <int D>
@@ -169,16 +191,24 @@ void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<
   std::vector<Vec<D>> points;
   std::vector<std::int32_t> species = settings.start_species;
   const double volume = Box<D>{high - low, {}}.volume();
+  std::int64_t fluid = 0;
   if (settings.start == StartKind::file) {
     check_start_positions(settings);
     points = settings.start_positions;
+    fluid = static_cast<std::int64_t>(points.size()) - settings.molecule_beads();
     const std::int64_t said =
         settings.count > 0 ? settings.count : std::llround(settings.start_density * volume);
-    if (said > 0 && said != static_cast<std::int64_t>(points.size()))
+    if (fluid < 0)
+      throw ConfigError(
+          fmt::format("{}: the start file holds {} particles, fewer than the {} of the molecules, "
+                      "which must be "
+                      "its last ones",
+                      settings.start_file, points.size(), settings.molecule_beads()));
+    if (said > 0 && said != fluid)
       throw ConfigError(fmt::format(
           "{}: the start file holds {} fluid particles, but fluid.{} asks for {}: make them agree, "
           "or leave that key out",
-          settings.start_file, points.size(), settings.count > 0 ? "count" : "density", said));
+          settings.start_file, fluid, settings.count > 0 ? "count" : "density", said));
   } else {
     const std::int64_t count =
         settings.count > 0 ? settings.count : std::llround(settings.density * volume);
@@ -187,9 +217,10 @@ void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<
                  ? lattice(low, high, count)
                  : random_points(settings.seed, settings.box, low, high, count, particles);
   }
-  if (species.empty())
-    species =
-        assign_species(settings.species, settings.seed, static_cast<std::int64_t>(points.size()));
+  if (settings.start != StartKind::file) fluid = static_cast<std::int64_t>(points.size());
+  const bool given = !species.empty();
+  if (!given) species = assign_species(settings.species, settings.seed, fluid);
+  if (settings.start == StartKind::file) append_molecule_species(settings, given, species);
   for (std::size_t k = 0; k < points.size(); ++k) {
     particles.add(points[k], species[k], 0);
     settings.box.wrap(particles.position.back());
@@ -217,7 +248,9 @@ void relax(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& 
     surroundings.potential_energy(particles, particles.position, stiffness);
     for (std::size_t i = 0; i < force.size(); ++i) {
       for (const std::int32_t edge : network.edges_of(static_cast<std::int64_t>(i)))
-        stiffness[i] += network.k_c[static_cast<std::size_t>(edge)];
+        // Both ends of a bond move, with few other neighbours to damp it.
+        stiffness[i] +=
+            (edge < network.pairs() ? 1.0 : 2.0) * network.k_c[static_cast<std::size_t>(edge)];
       const double size = norm(force[i]);
       if (!particles.is_free(i) || size == 0.0) continue;
       const double path = stiffness[i] > 0.0 ? std::min(size / stiffness[i], longest) : longest;
@@ -270,6 +303,8 @@ void draw_velocities(std::uint64_t seed, double kT, double mass, bool conserved,
 
 template void draw_velocities<2>(std::uint64_t, double, double, bool, Particles<2>&);
 template void draw_velocities<3>(std::uint64_t, double, double, bool, Particles<3>&);
+template bool inside_a_body<2>(const Box<2>&, const Particles<2>&, const Vec<2>&);
+template bool inside_a_body<3>(const Box<3>&, const Particles<3>&, const Vec<3>&);
 template void place_walls<2>(const SceneSettings<2>&, Particles<2>&);
 template void place_walls<3>(const SceneSettings<3>&, Particles<3>&);
 template void place_fluid<2>(const SceneSettings<2>&, const Vec<2>&, const Vec<2>&, Particles<2>&);

@@ -16,10 +16,30 @@ Scene<D>::Scene(SceneSettings<D> settings)
   body_kind_ = place_bodies(settings_.bodies, settings_.box, fluid_low(), fluid_high(),
                             settings_.seed, particles_);
   place_fluid(settings_, fluid_low(), fluid_high(), particles_);
+  if (settings_.start != StartKind::file)
+    place_molecules(settings_.molecules, settings_.box, fluid_low(), fluid_high(), settings_.seed,
+                    particles_);
+  join_molecules();
   relax(settings_.box, *model_, *this, settings_.relax_sweeps, particles_);
+  join_images(bonds_, settings_.box, particles_);
   draw_velocities(settings_.seed, largest_kT(), settings_.mass, conserves_momentum(), particles_);
   for (std::size_t i = 0; i < particles_.end_velocity.size() && settings_.box.shear; ++i)
     particles_.end_velocity[i] += settings_.box.flow_velocity(particles_.position[i]);
+}
+
+// The particles are all there; those of molecules come last.
+template <int D>
+void Scene<D>::join_molecules() {
+  molecules_ = list_molecules(settings_.molecules, particles_.size() - settings_.molecule_beads());
+  bonds_ = bonds_of(settings_.molecules, molecules_);
+  const std::int64_t first =
+      particles_.size() - static_cast<std::int64_t>(settings_.start_positions.size());
+  for (Bond bond : settings_.start_bonds) {
+    bond.i += first;
+    bond.j += first;
+    bonds_.push_back(bond);
+  }
+  if (!bonds_.empty()) model_ = std::make_unique<BondedModel<D>>(std::move(model_), bonds_);
 }
 
 template <int D>

@@ -300,8 +300,24 @@ void read_start(const Config& config, SceneSettings<D>& scene) {
                                     : StartKind::file;
   if (scene.start == StartKind::file)
     scene.start_file = (config.directory() / start.text("file")).string();
-  scene.relax_sweeps = start.integer("relax_sweeps", scene.start == StartKind::random ? 100 : 0);
+  // Molecules lie on top of a lattice.
+  const bool overlaps = scene.start == StartKind::random ||
+                        (scene.start == StartKind::lattice && !config.tables("molecule").empty());
+  scene.relax_sweeps = start.integer("relax_sweeps", overlaps ? 100 : 0);
   if (scene.relax_sweeps < 0) start.fail("relax_sweeps", "must be zero or positive");
+}
+
+template <int D>
+void read_bonds_file(const Config& config, SceneSettings<D>& scene) {
+  const Config bonds = config.table("bonds");
+  if (!bonds.has("file")) return;
+  if (scene.start != StartKind::file)
+    bonds.fail(
+        "file",
+        "it names particles by their place in the start file: give start.from = \"file\", or "
+        "use [[molecule]]");
+  scene.bonds_file = (config.directory() / bonds.text("file")).string();
+  scene.file_bond = read_bond(bonds, 0.0, true);
 }
 
 }  // namespace
@@ -360,6 +376,13 @@ double SceneSettings<D>::largest_force() const {
 }
 
 template <int D>
+std::int64_t SceneSettings<D>::molecule_beads() const {
+  std::int64_t beads = 0;
+  for (const auto& m : molecules) beads += m.molecules() * m.beads();
+  return beads;
+}
+
+template <int D>
 int SceneSettings<D>::wall_at(int axis, bool high) const {
   for (std::size_t w = 0; w < walls.size(); ++w)
     if (walls[w].axis == axis && walls[w].high == high) return static_cast<int>(w);
@@ -402,6 +425,13 @@ SceneSettings<D> read_scene_settings(const Config& config) {
     scene.bodies.back().species = species_index(scene.species, entry, "species",
                                                 entry.text("species", scene.species[0].name));
   }
+  for (const Config& entry : config.tables("molecule")) {
+    scene.molecules.push_back(read_molecule<D>(entry, scene.box));
+    auto& m = scene.molecules.back();
+    for (const std::string& name : m.species_names)
+      m.species.push_back(species_index(scene.species, entry, "species", name));
+  }
+  read_bonds_file(config, scene);
   read_fluid(config, scene);
   read_shear(config, scene);
   read_drive(config, scene);

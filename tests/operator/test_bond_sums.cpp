@@ -24,7 +24,7 @@ odpd::BondedModel<D> bonded_fluid(support::Fluid<D>& fluid, int bonds) {
                      .H = 30.0,
                      .r_0 = 0.5,
                      .r_max = 2.0}});
-  list.push_back({0, 3, {.H = 20.0, .r_0 = 0.3}});
+  list.push_back({0, 2 * bonds, {.H = 20.0, .r_0 = 0.3}});
   for (const auto& bond : list) {
     auto& r = fluid.particles.position;
     auto& end = r[static_cast<std::size_t>(bond.j)];

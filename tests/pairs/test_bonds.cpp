@@ -43,6 +43,8 @@ TYPED_TEST(BondEdges, FollowThePairsAndTheIdentities) {
   fluid.particles.position[7] = support::uniform_vec<D>(0.1);
   fluid.particles.position[9] = support::uniform_vec<D>(0.1);
   fluid.particles.position[9][0] = 2.8;
+  fluid.particles.position[0] = support::uniform_vec<D>(0.5);
+  fluid.particles.position[149] = support::uniform_vec<D>(3.9);
   std::vector<Bond> bonds{{7, 9, {.H = 3.0, .r_0 = 0.5}},
                           {9, 0, {.H = 4.0, .r_0 = 0.6}},
                           {149, 7, {.H = 5.0, .r_0 = 0.7}}};

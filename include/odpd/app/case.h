@@ -60,14 +60,15 @@ Config open_case(const std::filesystem::path& path, const std::vector<std::strin
 std::string case_name(const std::filesystem::path& path);
 /// Reads title, dimension, [integrator], [solver], [neighbours], [run], [output] and [[check]].
 CaseSettings read_case(const Config& config, const std::string& name);
-/// Fills start_positions and start_species from the start file (CSV or H5MD), where the scene has one.
+/// Fills start_positions, start_species and start_bonds from the start file (CSV or H5MD) and the file of bonds, where the
+/// scene has them.
 template <int D>
 void read_start_file(SceneSettings<D>& scene);
 
-/// The resolved case as TOML, its start file absolute: it runs from whatever directory it is put in.
+/// The resolved case as TOML, its start and bond files absolute: it runs from whatever directory it is put in.
 std::string portable_case(const Config& config);
-/// The values that a restart must find unchanged: all but title, run.duration, run.until, run.blow_up, start.file (whose
-/// particles are in the checkpoint), [solver] (but not solver.hold_centre_of_mass), [output] and [[check]].
+/// The values that a restart must find unchanged: all but title, run.duration, run.until, run.blow_up, start.file and bonds.file (whose
+/// contents are in the checkpoint), [solver] (but not solver.hold_centre_of_mass), [output] and [[check]].
 std::vector<std::pair<std::string, std::string>> fixed_values(const Config& config);
 
 }  // namespace odpd

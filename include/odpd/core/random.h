@@ -31,6 +31,9 @@ enum class Stream : std::uint64_t {
   monte_carlo =
       8,  ///< trial moves: counter (sweep, 0, id, 0): D displacements, acceptance; of bodies (sweep, 1, body, 0)
           ///< and their turns (sweep, 2, body, 0)
+  molecules =
+      12,  ///< places of molecules: counter (attempt, 0, molecule, 0), turns (.., 1, ..), steps of a walk
+           ///< (attempt, 2 + trial, molecule, bead)
   body_poses = 9,  ///< places and orientations of bodies: counter (attempt, 0 or 1, body, 0)
 };
 

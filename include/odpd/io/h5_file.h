@@ -32,6 +32,8 @@ class H5Image {
   void attribute(const std::string& path, const std::string& name, std::int64_t value);
   void attribute(const std::string& path, const std::string& name,
                  const std::vector<std::int64_t>& values);
+  /// An attribute that refers to another group or dataset.
+  void reference(const std::string& path, const std::string& name, const std::string& target);
   /// Makes the group unless it is there.
   void group(const std::string& path);
   void hard_link(const std::string& existing, const std::string& path);

@@ -36,6 +36,10 @@ struct BodySettings {
 template <int D>
 BodySettings<D> read_body(const Config& entry, const Box<D>& box);
 
+/// Turns a body as uniform random numbers u say: uniform over all orientations.
+void turn_at_random(const std::array<double, 4>& u, Rotation<2>& orientation);
+void turn_at_random(const std::array<double, 4>& u, Rotation<3>& orientation);
+
 /// Adds all bodies to the particles, those of unknown motion first, each [[body]] in turn, and returns for each body of the
 /// particles the index of its [[body]]. Random places lie between `low` and `high`. Throws ConfigError where there is no
 /// room.

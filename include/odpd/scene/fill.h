@@ -9,11 +9,15 @@
 
 namespace odpd {
 
+/// Nearer to the centre of a rigid body than its outermost constituent.
+template <int D>
+bool inside_a_body(const Box<D>& box, const Particles<D>& particles, const Vec<D>& r);
+
 /// Adds the particles of all walls, group k + 1 for walls[k].
 template <int D>
 void place_walls(const SceneSettings<D>& settings, Particles<D>& particles);
 
-/// Adds the free particles between `low` and `high` (or at the start file's positions).
+/// Adds the free particles between `low` and `high`, or those of the start file, among them the beads of molecules.
 template <int D>
 void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<D>& high,
                  Particles<D>& particles);

@@ -1,6 +1,6 @@
 #pragma once
 // A scene: the particles in their box, the pair model, flat walls of frozen particles with a smooth potential behind
-// their surface, obstacles and rigid bodies, and a body force. It is what the dynamics sees as its surroundings.
+// their surface, obstacles and rigid bodies, molecules, and a body force. It is what the dynamics sees as its surroundings.
 #include <memory>
 #include <vector>
 
@@ -30,6 +30,10 @@ class Scene : public Surroundings<D> {
   double largest_kT() const;
   /// Nothing takes momentum from the particles: no walls, no bodies of known motion and no uniform drag.
   bool conserves_momentum() const { return !settings_.held() && settings_.zeta_0 == 0.0; }
+  /// Molecules in the order of their identities; their settings by `kind`.
+  const std::vector<Molecule>& molecules() const { return molecules_; }
+  /// All bonds: of the molecules, then of [bonds].
+  const std::vector<Bond>& bonds() const { return bonds_; }
   /// The [[body]] that a body of the particles comes from.
   const BodySettings<D>& body_settings(std::size_t body) const {
     return settings_.bodies[body_kind_[body]];
@@ -50,12 +54,15 @@ class Scene : public Surroundings<D> {
   bool confine(Vec<D>& r) const override;
 
  private:
+  void join_molecules();
   double wall_energy(const WallSettings<D>& wall, const Vec<D>& r) const;
   double depth_behind(const WallSettings<D>& wall, const Vec<D>& r) const;
 
   SceneSettings<D> settings_;
   std::unique_ptr<PairModel<D>> model_;
   Particles<D> particles_;
+  std::vector<Molecule> molecules_;
+  std::vector<Bond> bonds_;
   std::vector<std::size_t> body_kind_;  // of each body: its [[body]]
 };
 

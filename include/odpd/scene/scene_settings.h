@@ -8,6 +8,7 @@
 #include "odpd/geometry/box.h"
 #include "odpd/pairs/dpd.h"
 #include "odpd/scene/bodies.h"
+#include "odpd/scene/molecules.h"
 #include "odpd/scene/physical_inputs.h"
 
 namespace odpd {
@@ -69,6 +70,11 @@ struct SceneSettings {
   double zeta_0 = 0.0;             ///< uniform drag on every fluid particle (mass/time)
   std::vector<WallSettings<D>> walls;
   std::vector<BodySettings<D>> bodies;
+  std::vector<MoleculeSettings<D>> molecules;
+  std::string bonds_file;    ///< of [bonds], resolved; empty: none
+  BondParameters file_bond;  ///< of its bonds, where the file does not say
+  std::vector<Bond>
+      start_bonds;      ///< contents of that file, particles of the start file counted from 0
   Vec<D> body_force{};  ///< on every particle that moves, or amplitude of the wave (force)
   ForceWave force_wave;
   std::vector<ForceRegion<D>> force_regions;
@@ -78,6 +84,7 @@ struct SceneSettings {
   std::vector<std::int32_t> start_species;  ///< one per start position
   std::int64_t relax_sweeps = 100;          ///< of overlap removal before the run
 
+  std::int64_t molecule_beads() const;  ///< of all molecules
   /// Something drives a flow: a force, a moving wall, a body that is moved or pushed, shear.
   bool driven() const;
   /// Walls, or bodies of known motion, hold the fluid and take up a net force.
@@ -98,7 +105,7 @@ struct SceneSettings {
   double fluid_volume() const;
 };
 
-/// Reads [box], [fluid], [[species]], [[pair]], [[wall]], [[body]], [shear], [body_force], [start] and `seed`. Throws ConfigError for
+/// Reads [box], [fluid], [[species]], [[pair]], [[wall]], [[body]], [[molecule]], [bonds], [shear], [body_force], [start] and `seed`. Throws ConfigError for
 /// values out of range and for contradictions (both gamma and sigma, a wall in a periodic direction, ...).
 template <int D>
 SceneSettings<D> read_scene_settings(const Config& config);

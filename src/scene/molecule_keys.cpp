@@ -1,0 +1,172 @@
+// The keys of [[molecule]] and the shapes it knows by name.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "odpd/core/error.h"
+#include "odpd/scene/molecules.h"
+
+namespace odpd {
+
+namespace {
+
+template <int D>
+Vec<D> bead_place(const Config& entry) {
+  const std::vector<double> values = entry.numbers("at");
+  if (values.size() != D)
+    entry.fail("at", fmt::format("{} components are needed in {} dimensions, there are {}", D, D,
+                                 values.size()));
+  Vec<D> v;
+  for (std::size_t c = 0; c < D; ++c) v.x[c] = values[c];
+  return v;
+}
+
+// D + 1 points, each a distance `edge` from all others: a triangle, or a tetrahedron.
+template <int D>
+std::vector<Vec<D>> simplex(double edge) {
+  std::vector<Vec<D>> points(1);
+  for (int c = 0; c < D; ++c) {
+    Vec<D> next{};
+    for (const Vec<D>& p : points) next += (1.0 / static_cast<double>(points.size())) * p;
+    const Vec<D> arm = points[0] - next;
+    next[c] = std::sqrt(edge * edge - dot(arm, arm));
+    points.push_back(next);
+  }
+  return points;
+}
+
+template <int D>
+void read_beads(const Config& entry, const std::string& shape, MoleculeSettings<D>& m) {
+  if (shape == "points") {
+    for (const Config& point : entry.tables("points")) {
+      m.shape.push_back(bead_place<D>(point));
+      m.species_names.push_back(point.text("species", m.species_names[0]));
+    }
+    m.species_names.erase(m.species_names.begin());
+    if (m.shape.empty())
+      entry.fail("points", "a shape of points needs some: points = [{ at = [0.0, ...] }, ...]");
+  } else if (shape == "simplex") {
+    m.shape = simplex<D>(entry.positive("spacing"));
+  } else {
+    const double spacing = entry.positive("spacing");
+    const std::int64_t beads = entry.positive_integer("beads", 2);
+    for (std::int64_t k = 0; k < beads; ++k) {
+      Vec<D> r{};
+      r[0] = spacing * static_cast<double>(k);
+      m.shape.push_back(r);
+    }
+    if (shape == "walk") m.walk = spacing;
+  }
+  if (m.shape.size() > 1 && shape != "points")
+    m.species_names.resize(m.shape.size(), m.species_names[0]);
+  Vec<D> centre{};
+  for (const Vec<D>& r : m.shape) centre += (1.0 / static_cast<double>(m.shape.size())) * r;
+  for (Vec<D>& r : m.shape) r -= centre;
+}
+
+template <int D>
+double span_of(const MoleculeSettings<D>& m, std::int64_t i, std::int64_t j) {
+  return norm(m.shape[static_cast<std::size_t>(i)] - m.shape[static_cast<std::size_t>(j)]);
+}
+
+// A table of its own per bond, each with the keys of the molecule where it has none.
+template <int D>
+void read_listed_bonds(const Config& entry, MoleculeSettings<D>& m) {
+  for (const Config& bond : entry.tables("bond")) {
+    const std::vector<double> ends = bond.numbers("between");
+    const auto beads = static_cast<double>(m.beads());
+    const auto is_bead = [&](double x) { return x >= 0.0 && x < beads && x == std::floor(x); };
+    if (ends.size() != 2 || !is_bead(ends[0]) || !is_bead(ends[1]) || ends[0] == ends[1])
+      bond.fail("between",
+                fmt::format("two different beads are needed, counted from 0 to {}", m.beads() - 1));
+    const auto i = static_cast<std::int64_t>(ends[0]), j = static_cast<std::int64_t>(ends[1]);
+    BondParameters p = read_bond(entry, span_of(m, i, j));
+    p.H = bond.positive("H", p.H);
+    p.r_0 = bond.non_negative("r_0", p.r_0);
+    m.bonds.push_back({i, j, p});
+  }
+}
+
+template <int D>
+void read_bonds(const Config& entry, bool chain, MoleculeSettings<D>& m) {
+  if (m.beads() < 2) return;
+  if (entry.has("bond")) return read_listed_bonds(entry, m);
+  const std::string which = entry.choice("bonds", {"chain", "all"}, chain ? "chain" : "all");
+  for (std::int64_t i = 0; i < m.beads(); ++i)
+    for (std::int64_t j = i + 1; j < m.beads() && (which == "all" || j == i + 1); ++j)
+      m.bonds.push_back({i, j, read_bond(entry, span_of(m, i, j))});
+}
+
+template <int D>
+void check_bonds(const Config& entry, const Box<D>& box, const MoleculeSettings<D>& m) {
+  for (const auto& bond : m.bonds) {
+    const double length = span_of(m, bond.i, bond.j);
+    for (int c = 0; c < D; ++c)
+      if (box.is_periodic(c) && length >= 0.5 * box.size[c])
+        entry.fail("shape", fmt::format("the bond of beads {} and {} is {:.4g} long: it must be "
+                                        "shorter than half the box in direction {}",
+                                        bond.i, bond.j, length, "xyz"[c]));
+    if (bond.p.law == BondLaw::fene && !std::isfinite(bond_terms(bond.p, length).u))
+      entry.fail("r_max", fmt::format("the bond of beads {} and {} is {:.4g} long in the shape, "
+                                      "out of its reach: | length - r_0 | must be below r_max = {}",
+                                      bond.i, bond.j, length, bond.p.r_max));
+  }
+}
+
+template <int D>
+void read_places(const Config& entry, const Box<D>& box, MoleculeSettings<D>& m) {
+  for (const Config& place : entry.tables("positions")) {
+    m.positions.push_back(bead_place<D>(place));
+    for (const Vec<D>& bead : m.shape)
+      for (int c = 0; c < D; ++c) {
+        const double x = m.positions.back()[c] + bead[c];
+        if (!box.is_periodic(c) && !(x >= 0.0 && x <= box.size[c]))
+          place.fail("at",
+                     fmt::format("a bead would lie at {} = {}, outside the box", "xyz"[c], x));
+      }
+  }
+  if (!m.positions.empty() && entry.has("count"))
+    entry.fail("count", "give positions or count, never both");
+  if (m.positions.empty()) m.count = entry.positive_integer("count", 1);
+  if (!m.positions.empty() && m.walk > 0.0)
+    entry.fail("positions", "a random walk lies anywhere: give count, or shape = \"chain\"");
+}
+
+}  // namespace
+
+BondParameters read_bond(const Config& entry, double length, bool open) {
+  BondParameters p;
+  const bool fene = entry.choice("law", {"harmonic", "fene"}, "harmonic") == "fene";
+  p.law = fene ? BondLaw::fene : BondLaw::harmonic;
+  if (!open || entry.has("H")) p.H = entry.positive("H");
+  // The default differs from bond to bond: it is not one of the case.
+  p.r_0 = entry.has("r_0") ? entry.non_negative("r_0") : fene ? 0.0 : length;
+  if (fene && (!open || entry.has("r_max"))) p.r_max = entry.positive("r_max");
+  const std::string exclude = entry.choice("exclude", {"none", "repulsion", "all"}, "none");
+  p.exclude = exclude == "none"        ? BondExclusion::none
+              : exclude == "repulsion" ? BondExclusion::repulsion
+                                       : BondExclusion::all;
+  return p;
+}
+
+template <int D>
+MoleculeSettings<D> read_molecule(const Config& entry, const Box<D>& box) {
+  MoleculeSettings<D> m;
+  m.name = entry.text("name", m.name);
+  if (!is_plain_name(m.name))
+    entry.fail("name", "use letters, digits, _ and -: it goes into file columns");
+  const std::string shape = entry.choice("shape", {"chain", "walk", "simplex", "points"});
+  m.species_names = {entry.text("species")};
+  read_beads(entry, shape, m);
+  read_bonds(entry, shape == "chain" || shape == "walk", m);
+  check_bonds(entry, box, m);
+  read_places(entry, box, m);
+  return m;
+}
+
+template struct MoleculeSettings<2>;
+template struct MoleculeSettings<3>;
+template MoleculeSettings<2> read_molecule<2>(const Config&, const Box<2>&);
+template MoleculeSettings<3> read_molecule<3>(const Config&, const Box<3>&);
+
+}  // namespace odpd

@@ -1,0 +1,189 @@
+#include "odpd/scene/molecules.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <queue>
+
+#include "odpd/core/error.h"
+#include "odpd/core/random.h"
+#include "odpd/scene/bodies.h"
+#include "odpd/scene/fill.h"
+
+namespace odpd {
+
+namespace {
+
+constexpr std::uint64_t most_places = 10000, most_directions = 1000;
+
+// Finds places for the beads of molecules.
+template <int D>
+class Room {
+ public:
+  Room(const Box<D>& box, const Vec<D>& low, const Vec<D>& high, std::uint64_t seed,
+       const Particles<D>& particles)
+      : box_(box),
+        low_(low),
+        high_(high),
+        random_(seed, Stream::molecules),
+        particles_(particles) {}
+
+  /// Unwrapped positions of the beads of molecule `number`; none where there is no room.
+  std::vector<Vec<D>> beads(const MoleculeSettings<D>& m, std::uint64_t number) const {
+    for (std::uint64_t attempt = 0; attempt < most_places; ++attempt) {
+      std::vector<Vec<D>> beads =
+          m.walk > 0.0 ? walk(m, attempt, number) : turned(m, attempt, number);
+      if (!beads.empty()) return beads;
+    }
+    return {};
+  }
+
+ private:
+  bool is_open(Vec<D> r) const {
+    for (int c = 0; c < D; ++c)
+      if (!box_.is_periodic(c) && !(r[c] >= low_[c] && r[c] <= high_[c])) return false;
+    box_.wrap(r);
+    return !inside_a_body(box_, particles_, r);
+  }
+
+  Vec<D> centre(std::uint64_t attempt, std::uint64_t number) const {
+    const auto u = random_.uniforms(attempt, 0, number, 0);
+    Vec<D> r;
+    for (int c = 0; c < D; ++c)
+      r[c] = low_[c] + (high_[c] - low_[c]) * u[static_cast<std::size_t>(c)];
+    return r;
+  }
+
+  std::vector<Vec<D>> turned(const MoleculeSettings<D>& m, std::uint64_t attempt,
+                             std::uint64_t number) const {
+    Rotation<D> orientation;
+    turn_at_random(random_.uniforms(attempt, 1, number, 0), orientation);
+    std::vector<Vec<D>> beads;
+    for (const Vec<D>& bead : m.shape) {
+      beads.push_back(centre(attempt, number) + orientation.turn(bead));
+      if (!is_open(beads.back())) return {};
+    }
+    return beads;
+  }
+
+  std::vector<Vec<D>> walk(const MoleculeSettings<D>& m, std::uint64_t attempt,
+                           std::uint64_t number) const {
+    std::vector<Vec<D>> beads{centre(attempt, number)};
+    if (!is_open(beads[0])) return {};
+    while (beads.size() < m.shape.size()) {
+      Vec<D> next{};
+      for (std::uint64_t turn = 0;; ++turn) {
+        if (turn == most_directions) return {};
+        const auto n = random_.normals(attempt, 2 + turn, number, beads.size());
+        Vec<D> direction;
+        for (int c = 0; c < D; ++c) direction[c] = n[static_cast<std::size_t>(c)];
+        next = beads.back() + (m.walk / norm(direction)) * direction;
+        if (is_open(next)) break;
+      }
+      beads.push_back(next);
+    }
+    return beads;
+  }
+
+  const Box<D>& box_;
+  Vec<D> low_, high_;
+  CounterRandom random_;
+  const Particles<D>& particles_;
+};
+
+}  // namespace
+
+template <int D>
+std::vector<Molecule> list_molecules(const std::vector<MoleculeSettings<D>>& settings,
+                                     std::int64_t first) {
+  std::vector<Molecule> molecules;
+  for (std::size_t kind = 0; kind < settings.size(); ++kind)
+    for (std::int64_t n = 0; n < settings[kind].molecules(); ++n) {
+      molecules.push_back({kind, first});
+      first += settings[kind].beads();
+    }
+  return molecules;
+}
+
+template <int D>
+std::vector<Bond> bonds_of(const std::vector<MoleculeSettings<D>>& settings,
+                           const std::vector<Molecule>& molecules) {
+  std::vector<Bond> bonds;
+  for (const Molecule& m : molecules)
+    for (const auto& link : settings[m.kind].bonds)
+      bonds.push_back({m.first + link.i, m.first + link.j, link.p});
+  return bonds;
+}
+
+template <int D>
+void place_molecules(const std::vector<MoleculeSettings<D>>& settings, const Box<D>& box,
+                     const Vec<D>& low, const Vec<D>& high, std::uint64_t seed,
+                     Particles<D>& particles) {
+  const Room<D> room(box, low, high, seed, particles);
+  std::uint64_t number = 0;
+  for (const MoleculeSettings<D>& m : settings)
+    for (std::int64_t n = 0; n < m.molecules(); ++n) {
+      std::vector<Vec<D>> beads = m.shape;
+      if (m.positions.empty()) {
+        beads = room.beads(m, number++);
+        if (beads.empty())
+          throw ConfigError(fmt::format(
+              "[[molecule]] '{}': no room was found for molecule {} of {}: use a larger "
+              "box, or give positions",
+              m.name, n + 1, m.molecules()));
+      } else {
+        for (Vec<D>& r : beads) r += m.positions[static_cast<std::size_t>(n)];
+      }
+      for (std::size_t k = 0; k < beads.size(); ++k) {
+        particles.add(beads[k], m.species[k], 0);
+        box.wrap(particles.position.back());
+      }
+    }
+}
+
+template <int D>
+void join_images(const std::vector<Bond>& bonds, const Box<D>& box, Particles<D>& particles) {
+  const std::vector<std::int32_t> index = particles.index_of_id();
+  std::vector<std::vector<std::size_t>> partners(index.size());
+  const auto place = [&](std::int64_t id) {
+    return static_cast<std::size_t>(index[static_cast<std::size_t>(id)]);
+  };
+  for (const Bond& bond : bonds) {
+    partners[place(bond.i)].push_back(place(bond.j));
+    partners[place(bond.j)].push_back(place(bond.i));
+  }
+  std::vector<char> joined(index.size(), 0);
+  for (const Bond& bond : bonds) {
+    std::queue<std::size_t> waiting;
+    if (joined[place(bond.i)] == 0) waiting.push(place(bond.i));
+    for (; !waiting.empty(); waiting.pop()) {
+      const std::size_t i = waiting.front();
+      joined[i] = 1;
+      for (const std::size_t j : partners[i]) {
+        if (joined[j] != 0) continue;
+        joined[j] = 1;
+        waiting.push(j);
+        const Vec<D> near = box.separation(particles.position[j], particles.position[i]);
+        const Vec<D> apart = particles.position[j] - particles.position[i];
+        for (std::size_t c = 0; c < D; ++c)
+          particles.image[j][c] =
+              particles.image[i][c] +
+              static_cast<std::int32_t>(std::lround((near.x[c] - apart.x[c]) / box.size.x[c]));
+      }
+    }
+  }
+}
+
+#define ODPD_INSTANTIATE(D)                                                                     \
+  template std::vector<Molecule> list_molecules<D>(const std::vector<MoleculeSettings<D>>&,     \
+                                                   std::int64_t);                               \
+  template std::vector<Bond> bonds_of<D>(const std::vector<MoleculeSettings<D>>&,               \
+                                         const std::vector<Molecule>&);                         \
+  template void place_molecules<D>(const std::vector<MoleculeSettings<D>>&, const Box<D>&,      \
+                                   const Vec<D>&, const Vec<D>&, std::uint64_t, Particles<D>&); \
+  template void join_images<D>(const std::vector<Bond>&, const Box<D>&, Particles<D>&);
+ODPD_INSTANTIATE(2)
+ODPD_INSTANTIATE(3)
+#undef ODPD_INSTANTIATE
+
+}  // namespace odpd
