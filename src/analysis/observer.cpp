@@ -8,6 +8,7 @@
 #include "odpd/analysis/density_residual.h"
 #include "odpd/analysis/divergence.h"
 #include "odpd/analysis/heat.h"
+#include "odpd/analysis/molecules.h"
 #include "odpd/analysis/msd.h"
 #include "odpd/analysis/profile.h"
 #include "odpd/analysis/rdf.h"
@@ -149,8 +150,7 @@ std::unique_ptr<Observer<D>> make_rdf(const Config& entry, ObserverSettings sett
 }
 
 template <int D>
-std::unique_ptr<Observer<D>> make_msd(const Config& entry, ObserverSettings settings,
-                                      const Scene<D>& scene, const Clock& clock) {
+MsdSettings read_msd(const Config& entry, const Scene<D>& scene) {
   MsdSettings m;
   m.window = entry.positive("window", 3.0);
   m.fit_from = entry.non_negative("fit_from", m.window / 3.0);
@@ -181,7 +181,7 @@ std::unique_ptr<Observer<D>> make_msd(const Config& entry, ObserverSettings sett
                              name));
   }
   if (m.directions.empty()) entry.fail("directions", "at least one direction is needed");
-  return std::make_unique<Msd<D>>(std::move(settings), m, scene, clock.dt);
+  return m;
 }
 
 template <int D>
@@ -246,13 +246,15 @@ std::int64_t default_every(const std::string& kind, const Clock& clock) {
   if (kind == "rdf") return 20;
   if (kind == "bodies") return 2;
   // Fifty lags of up to 0.06 time units.
-  if (kind == "msd") return std::max<std::int64_t>(1, std::llround(0.05 / clock.dt));
+  if (kind == "msd" || kind == "molecules")
+    return std::max<std::int64_t>(1, std::llround(0.05 / clock.dt));
   return 1;
 }
 
 template <int D>
 std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::string& kind,
-                                           const Scene<D>& scene, const Clock& clock) {
+                                           const Scene<D>& scene, const Clock& clock,
+                                           bool in_time) {
   ObserverSettings settings;
   settings.kind = kind;
   settings.name = entry.text("name", kind);
@@ -277,7 +279,12 @@ std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::strin
     return std::make_unique<WallForce<D>>(std::move(settings), scene);
   }
   if (kind == "bodies") return make_bodies(entry, std::move(settings), scene, clock);
-  return make_msd(entry, std::move(settings), scene, clock);
+  if (kind == "molecules") {
+    if (scene.settings().molecules.empty()) entry.fail("kind", "the scene has no [[molecule]]");
+    return std::make_unique<MoleculeStatistics<D>>(std::move(settings), read_msd(entry, scene),
+                                                   scene, clock.dt, in_time);
+  }
+  return std::make_unique<Msd<D>>(std::move(settings), read_msd(entry, scene), scene, clock.dt);
 }
 
 }  // namespace
@@ -288,7 +295,7 @@ std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
                                                          bool steps_are_time) {
   const std::vector<std::string> kinds{"thermo", "profile",   "density-residual", "rdf",
                                        "msd",    "heat",      "wall-force",       "stress",
-                                       "bodies", "viscosity", "divergence"};
+                                       "bodies", "viscosity", "divergence",       "molecules"};
   const std::vector<std::string> of_motion{"msd", "viscosity", "heat", "divergence"};
   std::vector<std::unique_ptr<Observer<D>>> observers;
   const auto have = [&](const std::string& kind) {
@@ -296,7 +303,8 @@ std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
                        [&](const auto& o) { return o->settings().kind == kind; });
   };
   for (const Config& entry : config.tables("observe")) {
-    observers.push_back(make_observer(entry, entry.choice("kind", kinds), scene, clock));
+    observers.push_back(
+        make_observer(entry, entry.choice("kind", kinds), scene, clock, steps_are_time));
     const ObserverSettings& newest = observers.back()->settings();
     for (const char* kind : {"thermo", "msd"})
       if (newest.name == kind && newest.kind != kind)
@@ -318,7 +326,7 @@ std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
   const Config nothing = Config::from_text("", "defaults");
   for (const std::string kind : {"thermo", "msd"})
     if (!have(kind) && (steps_are_time || kind != "msd"))
-      observers.push_back(make_observer(nothing, kind, scene, clock));
+      observers.push_back(make_observer(nothing, kind, scene, clock, steps_are_time));
   return observers;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "odpd/core/error.h"
-#include "odpd/scene/molecules.h"
+#include "odpd/scene/scene_settings.h"
 
 namespace odpd {
 
@@ -97,6 +97,24 @@ void read_bonds(const Config& entry, bool chain, MoleculeSettings<D>& m) {
       m.bonds.push_back({i, j, read_bond(entry, span_of(m, i, j))});
 }
 
+// Beads that no bond holds would be molecules of their own.
+template <int D>
+void check_joined(const Config& entry, const MoleculeSettings<D>& m) {
+  std::vector<bool> joined(m.shape.size(), false);
+  joined[0] = true;
+  for (std::int64_t round = 0; round < m.beads(); ++round)
+    for (const auto& bond : m.bonds) {
+      const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+      if (joined[i] || joined[j]) joined[i] = joined[j] = true;
+    }
+  for (std::size_t k = 0; k < joined.size(); ++k)
+    if (!joined[k])
+      entry.fail("bond",
+                 fmt::format("no bonds join beads 0 and {}: add some, or make them molecules "
+                             "of their own",
+                             k));
+}
+
 template <int D>
 void check_bonds(const Config& entry, const Box<D>& box, const MoleculeSettings<D>& m) {
   for (const auto& bond : m.bonds) {
@@ -132,6 +150,19 @@ void read_places(const Config& entry, const Box<D>& box, MoleculeSettings<D>& m)
     entry.fail("positions", "a random walk lies anywhere: give count, or shape = \"chain\"");
 }
 
+template <int D>
+void read_bonds_file(const Config& config, SceneSettings<D>& scene) {
+  const Config bonds = config.table("bonds");
+  if (!bonds.has("file")) return;
+  if (scene.start != StartKind::file)
+    bonds.fail(
+        "file",
+        "it names particles by their place in the start file: give start.from = \"file\", or "
+        "use [[molecule]]");
+  scene.bonds_file = (config.directory() / bonds.text("file")).string();
+  scene.file_bond = read_bond(bonds, 0.0, true);
+}
+
 }  // namespace
 
 BondParameters read_bond(const Config& entry, double length, bool open) {
@@ -159,11 +190,28 @@ MoleculeSettings<D> read_molecule(const Config& entry, const Box<D>& box) {
   m.species_names = {entry.text("species")};
   read_beads(entry, shape, m);
   read_bonds(entry, shape == "chain" || shape == "walk", m);
+  check_joined(entry, m);
   check_bonds(entry, box, m);
   read_places(entry, box, m);
   return m;
 }
 
+template <int D>
+void read_molecules(const Config& config, SceneSettings<D>& scene) {
+  for (const Config& entry : config.tables("molecule")) {
+    scene.molecules.push_back(read_molecule<D>(entry, scene.box));
+    auto& m = scene.molecules.back();
+    for (std::size_t k = 0; k + 1 < scene.molecules.size(); ++k)
+      if (scene.molecules[k].name == m.name)
+        entry.fail("name", fmt::format("two kinds of molecules are named '{}'", m.name));
+    for (const std::string& name : m.species_names)
+      m.species.push_back(species_index(scene.species, entry, "species", name));
+  }
+  read_bonds_file(config, scene);
+}
+
+template void read_molecules<2>(const Config&, SceneSettings<2>&);
+template void read_molecules<3>(const Config&, SceneSettings<3>&);
 template struct MoleculeSettings<2>;
 template struct MoleculeSettings<3>;
 template MoleculeSettings<2> read_molecule<2>(const Config&, const Box<2>&);

@@ -307,19 +307,6 @@ void read_start(const Config& config, SceneSettings<D>& scene) {
   if (scene.relax_sweeps < 0) start.fail("relax_sweeps", "must be zero or positive");
 }
 
-template <int D>
-void read_bonds_file(const Config& config, SceneSettings<D>& scene) {
-  const Config bonds = config.table("bonds");
-  if (!bonds.has("file")) return;
-  if (scene.start != StartKind::file)
-    bonds.fail(
-        "file",
-        "it names particles by their place in the start file: give start.from = \"file\", or "
-        "use [[molecule]]");
-  scene.bonds_file = (config.directory() / bonds.text("file")).string();
-  scene.file_bond = read_bond(bonds, 0.0, true);
-}
-
 }  // namespace
 
 std::int32_t species_index(const std::vector<SpeciesSettings>& species, const Config& where,
@@ -425,13 +412,7 @@ SceneSettings<D> read_scene_settings(const Config& config) {
     scene.bodies.back().species = species_index(scene.species, entry, "species",
                                                 entry.text("species", scene.species[0].name));
   }
-  for (const Config& entry : config.tables("molecule")) {
-    scene.molecules.push_back(read_molecule<D>(entry, scene.box));
-    auto& m = scene.molecules.back();
-    for (const std::string& name : m.species_names)
-      m.species.push_back(species_index(scene.species, entry, "species", name));
-  }
-  read_bonds_file(config, scene);
+  read_molecules(config, scene);
   read_fluid(config, scene);
   read_shear(config, scene);
   read_drive(config, scene);

@@ -234,4 +234,45 @@ expect_error 1 run box/checked.toml --set check.0.relative_tolerance=0.1 -- chec
 
 # Nothing that stands in the case file itself was found out only after something was written.
 expect test ! -e runs
+# --- molecules and bonds ---
+cp -r box chain
+cat >>chain/case.toml <<'CASE'
+
+[[molecule]]
+shape = "chain"
+spacing = 0.4
+beads = 3
+species = "fluid"
+H = 100.0
+CASE
+molecule() { run chain --set "molecule.0.$1" "${@:2}"; }
+expect_exit 0 molecule count=2 --out chained
+expect_error 1 molecule shape=ring -- molecule shape 'chain, walk, simplex, points'
+expect_error 1 molecule shape=points -- molecule points
+expect_error 1 molecule species=tail -- species "'tail'"
+expect_error 1 molecule H=0.0 -- molecule H positive
+expect_error 1 molecule r_0=-1.0 -- molecule r_0
+expect_error 1 molecule r_max=2.0 -- r_max
+expect_error 1 molecule law=fene -- molecule r_max
+expect_error 1 molecule law=fene --set molecule.0.r_max=0.3 -- r_max 'out of its reach'
+expect_error 1 molecule law=morse -- law 'harmonic, fene'
+expect_error 1 molecule exclude=some -- exclude
+expect_error 1 molecule spacing=50.0 -- 'half the box'
+expect_error 1 molecule 'bond=[{between=[0, 3]}]' -- between 'from 0 to 2'
+expect_error 1 molecule 'bond=[{between=[0, 1]}]' -- 'beads 0 and 2'
+expect_error 1 molecule 'positions=[{at=[1.0, 1.0]}]' --set molecule.0.count=2 -- count positions
+expect_error 1 run box --set 'observe=[{kind="molecules"}]' -- kind '[[molecule]]'
+expect_error 1 run box --set bonds.file=bonds.csv -- bonds.file start.from
+cp -r box joined
+sed -i '/^density/d' joined/case.toml
+printf 'x,y\n1.0,1.0\n1.5,1.0\n1.0,1.5\n' >joined/start.csv
+joined() { run joined --set start.from=file --set start.file=start.csv --set bonds.file=bonds.csv "$@"; }
+printf 'i,k\n0,1\n' >joined/bonds.csv
+expect_error 1 joined -- bonds.csv "column 'j'"
+printf 'i,j\n0,3\n' >joined/bonds.csv
+expect_error 1 joined --set bonds.H=1.0 -- bonds.csv:2 'j = 3'
+printf 'i,j\n0,1\n' >joined/bonds.csv
+expect_error 1 joined -- 'particles 0 and 1' 'H = 0'
+printf 'i,j\n0,1\n1,0\n' >joined/bonds.csv
+expect_error 1 joined --set bonds.H=1.0 -- 'bonded twice'
 finish

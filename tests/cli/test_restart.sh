@@ -324,4 +324,67 @@ for scheme in midpoint extrapolated implicit euler monte-carlo mass:trapezoidal 
   expect_exit 0 run many --threads 1 "${settings[@]}" --restart "$name-parts/checkpoint.h5"
   same_run "$name" "$name-parts"
 done
+# --- molecules: their bonds follow the identities, through a reordering, a restart and a change of threads ---
+cp -r many bonded
+cat >>bonded/case.toml <<'CASE'
+
+[[species]]
+name = "fluid"
+
+[[species]]
+name = "bead"
+count = 0
+
+[[molecule]]
+shape = "walk"
+beads = 6
+spacing = 0.5
+species = "bead"
+law = "fene"
+H = 30.0
+r_max = 1.5
+count = 3
+
+[[molecule]]
+name = "colloid"
+shape = "simplex"
+spacing = 0.25
+species = "bead"
+H = 1000.0
+exclude = "repulsion"
+count = 5
+
+[[observe]]
+kind = "molecules"
+window = 0.02
+every = 1
+series = true
+CASE
+for scheme in trapezoidal implicit monte-carlo; do
+  settings=(--set "integrator.name=$scheme" --set neighbours.reorder_every=4)
+  expect_exit 0 run bonded --threads 1 "${settings[@]}" --out "bonded-$scheme"
+  expect_exit 0 run bonded --threads 2 "${settings[@]}" --set run.duration=0.05 --out "bonded-$scheme-parts"
+  expect_exit 0 run bonded --threads 1 "${settings[@]}" --restart "bonded-$scheme-parts/checkpoint.h5"
+  same_run "bonded-$scheme" "bonded-$scheme-parts"
+done
+if have_h5py; then
+  expect "$python" -c "
+import h5py
+f = h5py.File('bonded-trapezoidal/trajectory.0000.h5')
+b = f['connectivity/bonds']
+assert b.shape == (30, 2) and f[b.attrs['particles_group']].name == '/particles/all', b"
+fi
+# A trajectory starts the same molecules; bonds may also come from a file, from anywhere.
+last=$(find bonded-trapezoidal -name 'trajectory.*.h5' | sort | tail -n 1)
+expect_exit 0 run bonded --set start.from=file --set "start.file=\"../$last\"" --set run.duration=0.02 --out bonded-again
+cp -r mixed joined
+printf 'i,j,r_0\n0,1,0.5\n1,17,0.7\n' >joined/bonds.csv
+printf '\n[bonds]\nfile = "bonds.csv"\nH = 50.0\n' >>joined/case.toml
+expect_exit 0 run joined --out joined_whole
+expect_exit 0 run joined --set run.duration=0.07 --out joined_part
+expect_exit 0 run joined_part --restart joined_part/checkpoint.h5
+expect_exit 0 run joined --restart joined_part/checkpoint.h5
+same_run joined_whole joined_part
+printf 'i,j,r_0\n0,1,0.5\n1,18,0.7\n' >joined/bonds.csv
+expect_error 1 run joined --restart joined_part/checkpoint.h5 -- 'other bonds'
 finish

@@ -194,6 +194,10 @@ TYPED_TEST(BondedEnergyTest, OfATrialMoveIsThatOfTheEdges) {
   particles.reorder(support::random_order(40, 3));
   // 3 and 4 far apart, 5 and 6 close: beyond the cutoff and within.
   const auto index = particles.index_of_id();
+  Vec<D>& far = particles.position[static_cast<std::size_t>(index[4])];
+  far = particles.position[static_cast<std::size_t>(index[3])];
+  far[0] += 1.2;
+  box.wrap(far);
   particles.position[static_cast<std::size_t>(index[6])] =
       particles.position[static_cast<std::size_t>(index[5])] + support::uniform_vec<D>(0.1);
   box.wrap(particles.position[static_cast<std::size_t>(index[6])]);

@@ -13,6 +13,7 @@
 //   viscosity         by every route that the scene allows
 //   heat              produced heat, power put in, change of energy
 //   msd               mean-square displacement and self-diffusion per species
+//   molecules         lengths of bonds, radius of gyration and diffusion of each kind of molecule
 #include <memory>
 #include <string>
 #include <vector>

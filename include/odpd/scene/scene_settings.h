@@ -110,6 +110,10 @@ struct SceneSettings {
 template <int D>
 SceneSettings<D> read_scene_settings(const Config& config);
 
+/// The part of it that [[molecule]] and [bonds] are.
+template <int D>
+void read_molecules(const Config& config, SceneSettings<D>& scene);
+
 /// Index of a species name; ConfigError at `key` listing the names.
 std::int32_t species_index(const std::vector<SpeciesSettings>& species, const Config& where,
                            const std::string& key, const std::string& name);

@@ -1,0 +1,43 @@
+#pragma once
+// Molecules of each kind: mean and variance of the length of their bonds, mean-square radius of gyration
+//
+//   R_g^2 = <1/n sum_b |r_b - R|^2>,   R = 1/n sum_b r_b
+//
+// and self-diffusion of the centre R from its mean-square displacement, as analysis/displacements.h has it.
+#include <array>
+
+#include "odpd/analysis/displacements.h"
+#include "odpd/analysis/msd.h"
+
+namespace odpd {
+
+template <int D>
+class MoleculeStatistics : public Observer<D> {
+ public:
+  /// `in_time`: steps are steps in time; otherwise there is no diffusion.
+  MoleculeStatistics(ObserverSettings settings, MsdSettings msd, const Scene<D>& scene, double dt,
+                     bool in_time);
+  void measure(const Clock& clock, const Particles<D>& particles,
+               const StepRecord<D>& record) override;
+  void add_results(Results& results) const override;
+  std::vector<std::string> series_columns() const override;
+  std::vector<double> series_row() const override { return newest_; }
+  void save(StateWriter& out) const override;
+  void load(const StateReader& in) override;
+
+ private:
+  std::vector<double> shapes(const Particles<D>& particles, const Stage<D>& stage) const;
+  void follow(const Particles<D>& particles);
+
+  MsdSettings msd_;
+  const Scene<D>& scene_;
+  bool in_time_;
+  std::vector<double> population_;  // molecules of each kind
+  // Of each kind: bonds that reach all beads from the first on, as (bead reached already, next bead).
+  std::vector<std::vector<std::array<std::size_t, 2>>> tree_;
+  BlockAverage shape_;  // per kind: length, its square, R_g^2
+  Displacements displacements_;
+  std::vector<double> newest_;
+};
+
+}  // namespace odpd

@@ -1,0 +1,162 @@
+#include "odpd/analysis/molecules.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace odpd {
+
+namespace {
+
+constexpr std::size_t shape_columns = 3;
+
+template <int D>
+std::vector<std::array<std::size_t, 2>> bond_tree(const MoleculeSettings<D>& m) {
+  std::vector<std::array<std::size_t, 2>> tree;
+  std::vector<bool> reached(m.shape.size(), false);
+  reached[0] = true;
+  while (tree.size() + 1 < m.shape.size()) {
+    const std::size_t before = tree.size();
+    for (const auto& bond : m.bonds) {
+      const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+      if (reached[i] == reached[j]) continue;
+      tree.push_back(reached[i] ? std::array{i, j} : std::array{j, i});
+      reached[i] = reached[j] = true;
+    }
+    if (tree.size() == before) break;
+  }
+  return tree;
+}
+
+}  // namespace
+
+template <int D>
+MoleculeStatistics<D>::MoleculeStatistics(ObserverSettings settings, MsdSettings msd,
+                                          const Scene<D>& scene, double dt, bool in_time)
+    : Observer<D>(std::move(settings)),
+      msd_(std::move(msd)),
+      scene_(scene),
+      in_time_(in_time),
+      population_(scene.settings().molecules.size(), 0.0),
+      shape_(shape_columns * population_.size()),
+      displacements_(msd_.window, msd_.fit_from, dt * static_cast<double>(this->settings().every),
+                     population_.size()) {
+  for (const Molecule& m : scene.molecules()) population_[m.kind] += 1.0;
+  for (const auto& m : scene.settings().molecules) tree_.push_back(bond_tree(m));
+}
+
+template <int D>
+void MoleculeStatistics<D>::measure(const Clock&, const Particles<D>& particles,
+                                    const StepRecord<D>& record) {
+  newest_ = shapes(particles, record.start);
+  shape_.add(newest_);
+  if (in_time_) follow(particles);
+}
+
+template <int D>
+std::vector<double> MoleculeStatistics<D>::shapes(const Particles<D>& particles,
+                                                  const Stage<D>& stage) const {
+  const std::vector<std::int32_t> index = particles.index_of_id();
+  std::vector<double> sums(shape_columns * population_.size(), 0.0);
+  std::vector<Vec<D>> beads;
+  for (const Molecule& m : scene_.molecules()) {
+    const auto& settings = scene_.settings().molecules[m.kind];
+    const auto first = static_cast<std::size_t>(m.first);
+    const auto place = [&](std::size_t bead) {
+      return stage.position[static_cast<std::size_t>(index[first + bead])];
+    };
+    double* sum = &sums[shape_columns * m.kind];
+    for (const auto& link : settings.bonds) {
+      const double r = norm(stage.box.separation(place(static_cast<std::size_t>(link.i)),
+                                                 place(static_cast<std::size_t>(link.j))));
+      const double share = 1.0 / (population_[m.kind] * static_cast<double>(settings.bonds.size()));
+      sum[0] += share * r;
+      sum[1] += share * r * r;
+    }
+    beads.assign(settings.shape.size(), Vec<D>{});
+    for (const auto& [from, to] : tree_[m.kind])
+      beads[to] = beads[from] + stage.box.separation(place(to), place(from));
+    const double bead = 1.0 / static_cast<double>(beads.size());
+    Vec<D> centre{};
+    for (const Vec<D>& r : beads) centre += bead * r;
+    for (const Vec<D>& r : beads)
+      sum[2] += bead / population_[m.kind] * dot(r - centre, r - centre);
+  }
+  return sums;
+}
+
+// What counts is how far a centre went: whether its beads lie in the same image does not matter.
+template <int D>
+void MoleculeStatistics<D>::follow(const Particles<D>& particles) {
+  const std::vector<std::int32_t> index = particles.index_of_id();
+  std::vector<double> centres;
+  std::vector<std::int32_t> kinds;
+  for (const Molecule& m : scene_.molecules()) {
+    const auto n = scene_.settings().molecules[m.kind].shape.size();
+    for (std::size_t c = 0; c < D; ++c) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < n; ++k) {
+        const auto i = static_cast<std::size_t>(index[static_cast<std::size_t>(m.first) + k]);
+        sum += particles.position[i].x[c] + particles.image[i][c] * scene_.box().size.x[c];
+      }
+      centres.push_back(sum / static_cast<double>(n));
+    }
+    kinds.push_back(static_cast<std::int32_t>(m.kind));
+  }
+  displacements_.add(std::move(centres), kinds, D, msd_.directions);
+}
+
+template <int D>
+std::vector<std::string> MoleculeStatistics<D>::series_columns() const {
+  std::vector<std::string> columns;
+  for (const auto& m : scene_.settings().molecules)
+    for (const char* what : {"bond_length", "bond_length_squared", "radius_of_gyration_squared"})
+      columns.push_back(fmt::format("{}_{}", what, m.name));
+  return columns;
+}
+
+template <int D>
+void MoleculeStatistics<D>::add_results(Results& results) const {
+  if (shape_.samples() == 0) return;
+  for (std::size_t kind = 0; kind < population_.size(); ++kind) {
+    const auto& m = scene_.settings().molecules[kind];
+    const std::string prefix = this->settings().name + "." + m.name + ".";
+    const std::size_t at = shape_columns * kind;
+    const auto variance = [at](const std::vector<double>& means) {
+      return means[at + 1] - means[at] * means[at];
+    };
+    if (!m.bonds.empty()) {
+      results.scalars.push_back(
+          {prefix + "bond_length", shape_.mean(at), shape_.standard_error(at)});
+      std::vector<double> means;
+      for (std::size_t k = 0; k < shape_.width(); ++k) means.push_back(shape_.mean(k));
+      results.scalars.push_back(
+          {prefix + "bond_variance", variance(means), shape_.jackknife_error(variance)});
+    }
+    results.scalars.push_back({prefix + "radius_of_gyration_squared", shape_.mean(at + 2),
+                               shape_.standard_error(at + 2)});
+    if (!in_time_) continue;
+    const bool any = displacements_.windows() > 0;
+    const BlockAverage& diffusion = displacements_.diffusion();
+    results.scalars.push_back({prefix + "diffusion", any ? diffusion.mean(kind) : std::nan(""),
+                               any ? diffusion.standard_error(kind) : std::nan("")});
+  }
+}
+
+template <int D>
+void MoleculeStatistics<D>::save(StateWriter& out) const {
+  shape_.save(out, "shape");
+  displacements_.save(out, "centres_");
+}
+
+template <int D>
+void MoleculeStatistics<D>::load(const StateReader& in) {
+  shape_.load(in, "shape");
+  displacements_.load(in, "centres_", scene_.molecules().size() * D);
+}
+
+template class MoleculeStatistics<2>;
+template class MoleculeStatistics<3>;
+
+}  // namespace odpd
