@@ -55,9 +55,9 @@ struct MultilevelKernels {
   /// x += alpha p, r -= alpha q, z = D^-1 r; D^-1 as upper triangles, 16 floats each.
   CgSums (*update[2])(const float* inverse, float alpha, const float* p, const float* q, float* x,
                       float* r, float* z, std::int64_t first, std::int64_t last);
-  /// w = keep y - step D^-1 w.
-  void (*local[2])(const float* inverse, float keep, float step, const float* y, float* w,
-                   std::int64_t first, std::int64_t last);
+  /// w = keep y - step D^-1 w; returns y . w, with w as it was.
+  double (*local[2])(const float* inverse, float keep, float step, const float* y, float* w,
+                     std::int64_t first, std::int64_t last);
   /// Adds t_n t_m W to the matrices of cells, [cell][triangle of W][corner n][corner m]. For the edges of a node: `other` its
   /// neighbours, six floats of W each, t_n = d . grad N_n at the edge's midpoint. For the node itself: t_n = N_n.
   void (*add_edges[2])(const ElementView&, std::int64_t node, std::int64_t count,
