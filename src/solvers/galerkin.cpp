@@ -67,7 +67,7 @@ class Elements {
  private:
   static constexpr int corners = GridShape<D>::corners;
   static constexpr int triangle = GridShape<D>::triangle;
-  static constexpr int size = triangle * corners * corners;
+  static constexpr int size = element_floats<D>;
   static constexpr std::size_t most_links = 64;  // handed over at once
 
   void place_nodes() {
@@ -131,7 +131,7 @@ void Elements<D>::add_to(GridOperator<D>& a) const {
         int entry = 0, unit = 1;
         for (int c = 0; c < D; ++c, unit *= 3) entry += unit * ((m >> c) % 2 - (n >> c) % 2 + 1);
         float* const block = a.block(place, entry);
-        for (int k = 0; k < triangle; ++k) block[16 * k] += sum[(k * corners + n) * corners + m];
+        for (int k = 0; k < triangle; ++k) block[16 * k] += sum[element_place<D>(k, n, m)];
       }
     }
     for (std::size_t c = 0; c < D; ++c) {
@@ -170,8 +170,8 @@ GridPosition<D> locate(const GridShape<D>& shape, const double* position) {
 template <int D>
 FrictionSpread friction_spread(const Resistance<D>& resistance) {
   double moment = 0.0, total = 0.0, ties = 0.0, tied = 0.0;
-  // A thousand particles tell it well enough.
-  const std::int64_t step = std::max<std::int64_t>(1, resistance.nodes() / 1024);
+  // Some hundred particles tell it well enough.
+  const std::int64_t step = std::max<std::int64_t>(1, resistance.nodes() / 256);
   for (std::int64_t n = 0; n < resistance.nodes(); n += step) {
     const auto node = static_cast<std::size_t>(n);
     const Vec<D> own = position_of(resistance, node);
