@@ -67,7 +67,7 @@ class Elements {
  private:
   static constexpr int corners = GridShape<D>::corners;
   static constexpr int triangle = GridShape<D>::triangle;
-  static constexpr int size = triangle * corners * corners;
+  static constexpr int size = element_floats<D>;
   static constexpr std::size_t most_links = 64;  // handed over at once
 
   void place_nodes() {
@@ -131,7 +131,7 @@ void Elements<D>::add_to(GridOperator<D>& a) const {
         int entry = 0, unit = 1;
         for (int c = 0; c < D; ++c, unit *= 3) entry += unit * ((m >> c) % 2 - (n >> c) % 2 + 1);
         float* const block = a.block(place, entry);
-        for (int k = 0; k < triangle; ++k) block[16 * k] += sum[(k * corners + n) * corners + m];
+        for (int k = 0; k < triangle; ++k) block[16 * k] += sum[element_place<D>(k, n, m)];
       }
     }
     for (std::size_t c = 0; c < D; ++c) {
@@ -168,22 +168,31 @@ GridPosition<D> locate(const GridShape<D>& shape, const double* position) {
 }
 
 template <int D>
-double friction_range(const Resistance<D>& resistance) {
-  double moment = 0.0, total = 0.0;
-  // A thousand particles tell it well enough.
-  const std::int64_t step = std::max<std::int64_t>(1, resistance.nodes() / 1024);
+FrictionSpread friction_spread(const Resistance<D>& resistance) {
+  double moment = 0.0, total = 0.0, ties = 0.0, tied = 0.0;
+  // Some hundred particles tell it well enough.
+  const std::int64_t step = std::max<std::int64_t>(1, resistance.nodes() / 256);
   for (std::int64_t n = 0; n < resistance.nodes(); n += step) {
     const auto node = static_cast<std::size_t>(n);
     const Vec<D> own = position_of(resistance, node);
+    double sum = 0.0, squares = 0.0;
     for (const auto& link : resistance.links(node)) {
       const auto other = static_cast<std::size_t>(link.node);
       const Vec<D> d = resistance.box().separation(own, position_of(resistance, other));
-      const double zeta = dot(resistance.g(link), resistance.g(link));
-      total += zeta;
+      double zeta = dot(resistance.g(link), resistance.g(link));
+      if (resistance.transverse())
+        zeta = resistance.across(link).sign * zeta + D * resistance.across(link).zeta_perp;
+      sum += zeta;
+      squares += zeta * zeta;
       moment += zeta * dot(d, d);
     }
+    total += sum;
+    if (!(squares > 0.0)) continue;
+    ties += sum * sum / squares;
+    tied += 1.0;
   }
-  return total > 0.0 ? std::sqrt(moment / total) : 0.0;
+  if (!(total > 0.0)) return {};
+  return {std::sqrt(moment / total), ties / tied};
 }
 
 template <int D>
@@ -199,8 +208,8 @@ template Vec<2> grid_position<2>(const Resistance<2>&, std::size_t);
 template Vec<3> grid_position<3>(const Resistance<3>&, std::size_t);
 template GridPosition<2> locate<2>(const GridShape<2>&, const double*);
 template GridPosition<3> locate<3>(const GridShape<3>&, const double*);
-template double friction_range<2>(const Resistance<2>&);
-template double friction_range<3>(const Resistance<3>&);
+template FrictionSpread friction_spread<2>(const Resistance<2>&);
+template FrictionSpread friction_spread<3>(const Resistance<3>&);
 template GridOperator<2> galerkin<2>(const Resistance<2>&, const GridShape<2>&);
 template GridOperator<3> galerkin<3>(const Resistance<3>&, const GridShape<3>&);
 

@@ -243,19 +243,28 @@ template <int D>
 GridOperator<D> GridOperator<D>::coarsened() const {
   GridOperator coarse(shape_.coarser());
   const auto paths = coarsening_paths(shape_);
+  // Triangles side by side and padded, so that a path is a vector operation.
+  constexpr std::size_t entries = GridShape<D>::entries, triangle = GridShape<D>::triangle,
+                        padded = D == 2 ? 4 : 8;
+  using Stencil = std::array<std::array<float, padded>, entries>;
   for_each_point(coarse.shape_, [&](const auto& point) {
-    float* const into = coarse.block(coarse.shape_.place(point), 0);
+    Stencil sum{}, from{};
     for (int side = 0; side < GridShape<D>::entries; ++side) {
       auto fine = point;
       if (paths[static_cast<std::size_t>(side)].empty() || !fine_point(shape_, side, fine))
         continue;
-      const float* const from = block(shape_.place(fine), 0);
+      const float* const blocks = block(shape_.place(fine), 0);
+      for (std::size_t n = 0; n < entries; ++n)
+        for (std::size_t k = 0; k < triangle; ++k) from[n][k] = blocks[(n * triangle + k) * group];
       for (const CoarseningPath& path : paths[static_cast<std::size_t>(side)]) {
-        const float* const a = from + path.neighbour * GridShape<D>::triangle * group;
-        float* const b = into + path.coarse * GridShape<D>::triangle * group;
-        for (int k = 0; k < GridShape<D>::triangle; ++k) b[k * group] += path.weight * a[k * group];
+        const auto& a = from[static_cast<std::size_t>(path.neighbour)];
+        auto& b = sum[static_cast<std::size_t>(path.coarse)];
+        for (std::size_t k = 0; k < padded; ++k) b[k] += path.weight * a[k];
       }
     }
+    float* const into = coarse.block(coarse.shape_.place(point), 0);
+    for (std::size_t n = 0; n < entries; ++n)
+      for (std::size_t k = 0; k < triangle; ++k) into[(n * triangle + k) * group] = sum[n][k];
   });
   return coarse;
 }

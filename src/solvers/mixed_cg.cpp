@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "block_inverse.h"
 #include "cg_engine.h"
 #include "multilevel_kernels.h"
 #include "odpd/core/error.h"
@@ -41,29 +42,6 @@ template <int D>
 constexpr std::int64_t fewest_for_grid = D == 2 ? 500 : 5000;
 constexpr double shift_without_grid = 0.02;
 
-/// Inverse of a symmetric block; its first entry NaN when it is not positive definite to rounding.
-template <class Block>
-Block inverse_of(const Block& m) {
-  constexpr double singular = 1e-13;
-  Block out;
-  if constexpr (std::tuple_size_v<Block> == 4) {
-    const double det = m[0] * m[3] - m[1] * m[1];
-    const bool good = m[0] > 0.0 && m[3] > 0.0 && det > singular * m[0] * m[3];
-    const double scale = good ? 1.0 / det : std::nan("");
-    out = {scale * m[3], -scale * m[1], -scale * m[1], scale * m[0]};
-  } else {
-    const double c00 = m[4] * m[8] - m[5] * m[5], c01 = m[2] * m[5] - m[1] * m[8],
-                 c02 = m[1] * m[5] - m[2] * m[4], c11 = m[0] * m[8] - m[2] * m[2],
-                 c12 = m[1] * m[2] - m[0] * m[5], c22 = m[0] * m[4] - m[1] * m[1];
-    const double det = m[0] * c00 + m[1] * c01 + m[2] * c02;
-    const bool good = m[0] > 0.0 && c22 > singular * m[0] * m[4] && det > singular * c22 * m[8];
-    const double scale = good ? 1.0 / det : std::nan("");
-    out = {scale * c00, scale * c01, scale * c02, scale * c01, scale * c11,
-           scale * c12, scale * c02, scale * c12, scale * c22};
-  }
-  return out;
-}
-
 template <int D>
 class MixedCg : public CgEngine {
  public:
@@ -89,6 +67,7 @@ class MixedCg : public CgEngine {
   void flush(std::span<double> x, double scale);
   double product();
   CgSums update(double alpha);
+  double local_step(double keep, double step, const FloatArray& in, FloatArray& out);
   double precondition(double rz);
   void turn(double beta);
   void project(FloatArray& v);
@@ -107,6 +86,8 @@ class MixedCg : public CgEngine {
   std::string note_;
   FloatArray inverse_;  // of the diagonal blocks: upper triangles, 16 places side by side
   FloatArray r_, z_, p_, q_, x_;
+  FloatArray t_;  // of a third and fourth local step
+  LocalPart local_;
   std::vector<double> residual_;
   double first_residual_ = 0.0;  // its norm at the start of an attempt
   std::vector<double> guess_;    // of the attempt at hand, for whoever starts over
@@ -124,6 +105,8 @@ void MixedCg<D>::set_up(const System& system) {
   sums_.resize(index(2 * blocks()));
   invert_diagonal();
   if (with_grid_) grid_.set_up(*resistance_, rows_);
+  local_ = grid_.local();
+  t_.resize(with_grid_ && local_.size() > 2 ? rows_.vector_size() : 0);
 }
 
 template <int D>
@@ -234,21 +217,38 @@ CgSums MixedCg<D>::update(double alpha) {
   return total;
 }
 
-/// With z = D^-1 r and r . z given: the local part of the preconditioner in q, the grid's in its correction. Returns the
-/// product of r and both.
+/// out = keep z - step D^-1 A in, z = D^-1 r; returns z . A in.
+template <int D>
+double MixedCg<D>::local_step(double keep, double step, const FloatArray& in, FloatArray& out) {
+  parallel_blocks(blocks(), [&](std::int64_t block) {
+    const std::int64_t first = block * block_places, last = end_of(block);
+    rows_.product(in.data(), out.data(), first, last);
+    sums_[index(block)] = multilevel_kernels().local[D - 2](
+        inverse_.data(), static_cast<float>(keep), static_cast<float>(step), z_.data(), out.data(),
+        first, last);
+  });
+  double sum = 0.0;
+  for (std::int64_t block = 0; block < blocks(); ++block) sum += sums_[index(block)];
+  return sum;
+}
+
+/// With z = D^-1 r and r . z given: the local part of the preconditioner in q, the grid's in its correction. Returns the product
+/// of r and both.
 template <int D>
 double MixedCg<D>::precondition(double rz) {
   if (!with_grid_) return rz;
-  constexpr double step = Multilevel<D>::local_weight, keep = step * Multilevel<D>::local_bound;
-  parallel_blocks(blocks(), [&](std::int64_t block) {
-    const std::int64_t first = block * block_places, last = end_of(block);
-    sums_[index(block)] = rows_.product(z_.data(), q_.data(), first, last);
-    multilevel_kernels().local[D - 2](inverse_.data(), static_cast<float>(keep),
-                                      static_cast<float>(step), z_.data(), q_.data(), first, last);
-  });
-  double zaz = 0.0;
-  for (std::int64_t block = 0; block < blocks(); ++block) zaz += sums_[index(block)];
-  return keep * rz - step * zaz + grid_.cycle();
+  const LocalPart& c = local_;
+  // From the inside, Horner's rule; the last step writes to q.
+  std::size_t k = c.size() - 1;
+  FloatArray *out = k % 2 == 1 ? &q_ : &t_, *other = k % 2 == 1 ? &t_ : &q_;
+  double step = c[k], zau = local_step(c[k - 1], step, z_, *out);
+  for (--k; k > 0; --k) {
+    std::swap(out, other);
+    step = 1.0;
+    zau = local_step(c[k - 1], step, *other, *out);
+  }
+  const double work = c[0] * rz - step * zau;
+  return work + grid_.cycle();
 }
 
 /// p = preconditioned r + beta p.
@@ -368,7 +368,7 @@ Solver::Attempt MixedCg<D>::attempt(std::span<const double> b, std::span<double>
 
 template <int D>
 std::int64_t MixedCg<D>::memory_bytes() const {
-  const std::int64_t floats = inverse_.size() + 5 * r_.size();
+  const std::int64_t floats = inverse_.size() + 5 * r_.size() + t_.size();
   return rows_.bytes() + (with_grid_ ? grid_.bytes() : 0) +
          floats * static_cast<std::int64_t>(sizeof(float)) +
          static_cast<std::int64_t>(residual_.size() * sizeof(double));

@@ -21,7 +21,8 @@ struct TransferView {
   std::int64_t corner[8];  ///< offsets of the cell's corners from the lowest one, x fastest
 };
 
-/// Matrices of the cells of a grid, and the nodes that are seen from it.
+/// Matrices of the cells of a grid, and the nodes that are seen from it. An element is the sum of t_n t_m W over corners n, m
+/// and the triangle of W. It is symmetric in n and m: only m = n + s modulo 2^D with s <= 4 is kept, at `element_place`.
 struct ElementView {
   const float* position;   ///< per node four floats, in units of the spacing from the first point
   float cells[4];          ///< per direction; 1 in the unused ones
@@ -29,6 +30,23 @@ struct ElementView {
   std::int32_t stride[4];  ///< of the cells' numbers; 0 in the unused ones
   float* elements;
 };
+
+template <int D>
+inline constexpr int element_floats = D == 2 ? 3 * 16 : 6 * 40;
+
+/// Of entry (n, m) for the number w in the triangle: blocks of 16 floats, in 3D of s = 0 and 1, of s = 2 and 3, half ones of 4.
+template <int D>
+constexpr int element_place(int w, int n, int m) {
+  constexpr int corners = 1 << D, triangle = D * (D + 1) / 2;
+  int s = (m - n + corners) % corners;
+  if (s > 4) {
+    s = corners - s;
+    n = m;
+  }
+  if (s == 4) return triangle * 32 + w * 8 + n;
+  const int block = s * corners / 16;
+  return (block * triangle + w) * 16 + s * corners % 16 + n;
+}
 
 struct CgSums {
   double rr, rz;
@@ -55,10 +73,10 @@ struct MultilevelKernels {
   /// x += alpha p, r -= alpha q, z = D^-1 r; D^-1 as upper triangles, 16 floats each.
   CgSums (*update[2])(const float* inverse, float alpha, const float* p, const float* q, float* x,
                       float* r, float* z, std::int64_t first, std::int64_t last);
-  /// w = keep y - step D^-1 w.
-  void (*local[2])(const float* inverse, float keep, float step, const float* y, float* w,
-                   std::int64_t first, std::int64_t last);
-  /// Adds t_n t_m W to the matrices of cells, [cell][triangle of W][corner n][corner m]. For the edges of a node: `other` its
+  /// w = keep y - step D^-1 w; returns y . w, with w as it was.
+  double (*local[2])(const float* inverse, float keep, float step, const float* y, float* w,
+                     std::int64_t first, std::int64_t last);
+  /// Adds t_n t_m W to the elements of cells. For the edges of a node: `other` its
   /// neighbours, six floats of W each, t_n = d . grad N_n at the edge's midpoint. For the node itself: t_n = N_n.
   void (*add_edges[2])(const ElementView&, std::int64_t node, std::int64_t count,
                        const std::int32_t* other, const float* weight);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "odpd/core/parallel.h"
+#include "odpd/solvers/galerkin.h"
 #include "odpd/solvers/multilevel.h"
 #include "odpd/solvers/solver.h"
 #include "solvers/resistance_toys.h"
@@ -59,6 +60,21 @@ TYPED_TEST(MultilevelCg, SteepWeightsNeedNotManyMore) {
   ASSERT_TRUE(report.converged) << report.failure;
   EXPECT_EQ(report.note, "");
   EXPECT_LE(report.iterations, 38);
+}
+
+// So steep that three neighbours share a particle's friction: four local steps. Two of them take 86 (2D)
+// and 97 iterations.
+TYPED_TEST(MultilevelCg, TakesMoreLocalStepsForSteeperWeights) {
+  constexpr int D = TypeParam::D;
+  const toys::RandomFluid<D> toy(8000, toys::Ends::periodic, 0.0, 0.0, 3, 5.0);
+  const odpd::FrictionSpread friction = odpd::friction_spread(toy.resistance);
+  EXPECT_GT(friction.ties, 2.0);
+  EXPECT_LT(friction.ties, 5.0);
+  std::vector<double> x;
+  const SolveReport report = solve(toy, "multilevel", 1e-7, x);
+  ASSERT_TRUE(report.converged) << report.failure;
+  EXPECT_EQ(report.note, "");
+  EXPECT_LE(report.iterations, 74);
 }
 
 TYPED_TEST(MultilevelCg, ReachesADoubleResidual) {

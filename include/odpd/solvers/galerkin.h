@@ -24,10 +24,14 @@ Vec<D> grid_position(const Resistance<D>& resistance, std::size_t node);
 template <int D>
 GridPosition<D> locate(const GridShape<D>& shape, const double* position);
 
-/// Length over which friction acts, sqrt(sum zeta r^2 / sum zeta) over the edges of a sample of the
-/// particles; 0 without any.
+/// How friction is spread, by the edges of a sample of the particles, with zeta the trace of an edge's friction.
+struct FrictionSpread {
+  double range = 0.0;  ///< sqrt(sum zeta r^2 / sum zeta) (length); 0 without any
+  /// (sum zeta)^2 / sum zeta^2 over the edges of a particle, on average: neighbours that share in its friction; 0 without any
+  double ties = 0.0;
+};
 template <int D>
-double friction_range(const Resistance<D>& resistance);
+FrictionSpread friction_spread(const Resistance<D>& resistance);
 
 template <int D>
 GridOperator<D> galerkin(const Resistance<D>& resistance, const GridShape<D>& shape);

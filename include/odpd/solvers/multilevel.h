@@ -1,18 +1,21 @@
 #pragma once
 // The multilevel preconditioner of conjugate gradients on the rows of R:
 //
-//   z = w (c - D^-1 A) D^-1 r + P V P^T r,   c = 2.15, w = 2
+//   z = q(D^-1 A) D^-1 r + P V P^T r,   q(L) = 2 (2.15 - L), or, where few neighbours share a particle's friction,
+//                                       q(L) = 2 (1 - T_4(x)/T_4(x_0))/L,  x = (2.1 - 2 L)/1.9, x_0 = 2.1/1.9
 //
 // D the block diagonal, P multilinear interpolation from a regular grid of about 1.7 cutoffs to the particles, V a
 // multigrid cycle for the Galerkin operator of the grid. The eigenvalues of D^-1 A are at most 2, since
 //
 //   2 D - A = sum_edges g g^T on v_i + v_j (and what holds a node) >= 0,
 //
-// so the local part, a second step of block-Jacobi, is definite for c > 2. It serves clusters of strongly bound particles
+// so the local part, two or four steps of block-Jacobi, is definite. (T_4: Chebyshev's polynomial, small for 0.1 < L < 2.)
+// It serves clusters of strongly bound particles
 // that move together against weak ties: D alone takes them to be as stiff as the ties inside. The grid stands still while
 // the particles move, so its operator ages slowly: it is kept until convergence has slowed down (`note_rate`).
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "odpd/core/archive.h"
 #include "odpd/solvers/multigrid.h"
@@ -21,6 +24,9 @@ namespace odpd {
 
 /// Where a chunk of the places begins: a multiple of 1024, the block of sums.
 std::int64_t chunk_begin(std::int64_t places, std::int64_t chunk);
+
+/// q(L) D^-1 r with q(L) = c_0 - L (c_1 - L (c_2 - ...)), L = D^-1 A.
+using LocalPart = std::vector<double>;
 
 template <int D>
 class Multilevel {
@@ -33,9 +39,8 @@ class Multilevel {
   void note_rate(double decades_per_iteration);
   static constexpr double aged = 0.8;
 
-  /// c and w of the local part, which is the caller's.
-  static constexpr double local_bound = 2.15;
-  static constexpr double local_weight = 2.0;
+  /// The local part, which is the caller's.
+  LocalPart local() const;
 
   // One application, piece by piece, so that the loops over the particles can be joined with others.
   /// The pieces [0, chunks()) of the places may be restricted at the same time.
@@ -61,6 +66,7 @@ class Multilevel {
   Multigrid<D> grid_;
   double shift_ = 0.0, stiffness_time_ = 0.0;  // what the grid operator was built with
   double fresh_rate_ = 0.0, last_rate_ = 0.0;
+  double ties_ = 0.0;  // of FrictionSpread, when the operator was built
   std::int64_t builds_ = 0;
   std::int64_t places_ = 0;
   FloatArray place_;                         // position in cell and cell, four floats per place
