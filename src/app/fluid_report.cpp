@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 #include <vector>
 
+#include "odpd/analysis/viscosity.h"
 #include "odpd/app/report.h"
 
 namespace odpd {
@@ -81,6 +83,61 @@ JsonObject json_of(const Named& values) {
   return json;
 }
 
+struct FlowScale {
+  double speed = 0.0, length = 0.0;
+};
+
+// Half the difference of two walls' speeds and their distance; or the largest speed that the force gives at this viscosity, and the
+// width of its stream; zero for a fluid at rest.
+template <int D>
+FlowScale flow_scale(const Scene<D>& scene, double eta) {
+  using Kind = ViscosityScene::Kind;
+  const SceneSettings<D>& s = scene.settings();
+  const ViscosityScene v = viscosity_scene(scene);
+  const double width = v.to - v.from + 2.0 * scene.model().cutoff();
+  if (v.kind == Kind::sheared) {
+    const auto wall = [&](bool high) {
+      return s.walls[static_cast<std::size_t>(s.wall_at(v.axis, high))].velocity[v.component];
+    };
+    return {0.5 * std::abs(wall(true) - wall(false)), width};
+  }
+  Vec<D> middle{};
+  middle[v.axis] = 0.5 * (v.from + v.to);
+  if (v.kind == Kind::parabola)
+    return {
+        density_of(scene) * std::abs(s.force_at(middle)[v.component]) * width * width / (8.0 * eta),
+        width};
+  if (v.kind != Kind::sine) return {};
+  const double length = s.box.size[v.axis] / static_cast<double>(s.force_wave.number);
+  return {density_of(scene) * std::abs(s.body_force[v.component]) *
+              std::pow(length / (2.0 * std::numbers::pi), 2) / eta,
+          length};
+}
+
+// Re, M, Sc (Phan-Thien et al. 2016, eq. 1), Pe = U L/D, and eta U/(L n dp/dn), which takes the place of the Mach number at mass 0;
+// with what the run measured, and the equation of state of kinetic theory. Empty without a measured viscosity.
+template <int D>
+Named group_values(const Scene<D>& scene, const KineticTheory& k, const Results& results) {
+  const Scalar* eta = measured_viscosity(results);
+  if (eta == nullptr || !(eta->mean > 0.0)) return {};
+  const FlowScale flow = flow_scale(scene, eta->mean);
+  const Scalar* diffusion = results.find("diffusion");
+  const bool diffuses = diffusion != nullptr && diffusion->mean > 0.0;
+  Named values;
+  if (diffuses)
+    values.emplace_back("Sc", k.rho > 0.0 ? eta->mean / (k.rho * diffusion->mean)
+                                          : std::numeric_limits<double>::infinity());
+  if (flow.speed == 0.0) return values;
+  values.emplace_back("U", flow.speed);
+  values.emplace_back("L", flow.length);
+  values.emplace_back("Re", k.rho * flow.speed * flow.length / eta->mean);
+  values.emplace_back("Mach", k.rho > 0.0 ? flow.speed / k.speed_of_sound : 0.0);
+  if (diffuses) values.emplace_back("Pe", flow.speed * flow.length / diffusion->mean);
+  values.emplace_back("viscous_compression",
+                      eta->mean * flow.speed / (flow.length * k.bulk_modulus));
+  return values;
+}
+
 // What the numbers above leave out, for this fluid.
 template <int D>
 std::string limits(const Scene<D>& scene) {
@@ -120,6 +177,8 @@ std::string fluid_text(const Scene<D>& scene, const Results& results) {
       measured ? fmt::format("eta = {} ({})", with_error(measured->mean, measured->standard_error),
                              measured->name)
                : "eta: not in this run");
+  if (const Named groups = group_values(scene, k, results); !groups.empty())
+    out += line("groups", groups);
   return out + limits(scene);
 }
 
@@ -132,6 +191,7 @@ JsonObject fluid_json(const Scene<D>& scene, const Results& results) {
   json.set("dpd", json_of(dpd_values(settings.fluid)));
   json.set("asked_for", json_of(asked_values(settings.physical_inputs)));
   json.set("kinetic_theory", json_of(kinetic_values(k)));
+  json.set("groups", json_of(group_values(scene, k, results)));
   const Scalar* measured = measured_viscosity(results);
   if (!measured) return json.set("viscosity_measured", std::numeric_limits<double>::quiet_NaN());
   return json.set("viscosity_measured", JsonObject()

@@ -118,6 +118,12 @@ expect_error 1 run box --set solver.name=pgc -- "'pcg'"
 expect_error 1 run box --set integrator.name=verlet -- '--set integrator.name' trapezoidal euler
 expect_error 1 run box --set 'observe=[{kind="profil"}]' -- kind "'profile'"
 expect_error 1 run box --set 'observe=[{kind="rdf"}, {kind="rdf"}]' -- rdf name
+expect_error 1 run box --set 'observe=[{kind="stress", bins=-1}]' -- bins
+expect_error 1 run box --set 'observe=[{kind="viscosity", every=2}]' -- every 'every step'
+expect_error 1 run channel --set 'observe=[{kind="viscosity", window=1.0}]' -- window
+expect_error 1 run box --set fluid.mass=1.0 --set 'observe=[{kind="heat"}]' -- heat fluid.mass
+expect_error 1 run box --set 'observe=[{kind="divergence", bins=[2.0, 4.0]}]' -- bins 3
+expect_error 1 run box --set 'observe=[{kind="profile", fit="sine"}]' -- fit body_force.wave
 
 # --- contradictions in the scene ---
 expect_error 1 run box --set 'box.size=[1.5, 4.0]' -- cutoff 1.5

@@ -34,9 +34,11 @@ struct Pressures {
   double error(std::size_t k) const { return average.standard_error(k); }
 };
 
-Pressures measure(const std::string& integrator, const std::string& dt, const std::string& time) {
-  const Config config =
-      equilibrium({"integrator.name=" + integrator, "integrator.dt=" + dt, "run.duration=" + time});
+Pressures measure(const std::string& integrator, const std::string& dt, const std::string& time,
+                  std::vector<std::string> overrides = {}) {
+  overrides.insert(overrides.end(), {"integrator.name=" + integrator, "integrator.dt=" + dt,
+                                     "run.duration=" + time});
+  const Config config = equilibrium(overrides);
   Simulation<2> simulation(config, read_case(config, "04_equilibrium"));
   Pressures p;
   while (!simulation.clock().finished()) {
@@ -80,6 +82,18 @@ TEST(StressAtEquilibrium, FrictionVanishesWithTheStepInBothSchemes) {
     EXPECT_GT(std::abs(coarse.of(0)), 3.0 * std::abs(fine.of(0))) << scheme;
     EXPECT_NEAR(fine.of(0), 0.0, 0.05) << scheme;
   }
+}
+
+// The same with rigid bodies, whose forces act at their centres.
+TEST(StressAtEquilibrium, FrictionAddsNothingWithRigidBodies) {
+  const Pressures p =
+      measure("trapezoidal", "0.005", "20",
+              {"body=[{count=8, points=[{at=[-0.2, 0.0]}, {at=[0.2, 0.0]}, {at=[0.0, 0.3]}], "
+               "shape=\"points\"}]"});
+  EXPECT_LT(p.error(0), 0.03);
+  EXPECT_NEAR(p.of(0), 0.0, 0.05 + 5.0 * p.error(0));
+  EXPECT_NEAR(p.of(1), 0.0, 5.0 * p.error(1));
+  EXPECT_LT(p.of(2), -1.0) << "the first stage alone";
 }
 
 Scalar viscosity_of(const std::vector<std::string>& overrides) {
