@@ -213,7 +213,7 @@ TYPED_TEST(BondedEnergyTest, OfATrialMoveIsThatOfTheEdges) {
       PairNetwork<D> network;
       model.write_edges(list, box, particles.position, particles, network);
       double u = 0.0;
-      for (const double edge : network.u) u += edge;
+      u += network.u.sum();
       return u;
     };
     LocalEnergy<D> local(box, model, nothing, particles);
