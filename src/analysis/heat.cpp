@@ -12,34 +12,54 @@ template <int D>
 void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
                         const StepRecord<D>& record, double weight) {
   const PairNetwork<D>& network = stage.network;
-  const auto slip = [&](const PairNetwork<D>& edges, std::size_t k) {
-    return stage.velocity[static_cast<std::size_t>(edges.i[k])] -
-           stage.velocity[static_cast<std::size_t>(edges.j[k])];
-  };
   std::vector<double> friction(network.i.size()), noise(record.edge_noise.size());
   parallel_for(network.size(), [&](std::int64_t edge) {
     const auto k = static_cast<std::size_t>(edge);
-    friction[k] =
-        -dot(friction_of<D>(network, k, network.slip(k, stage.velocity)), slip(network, k));
+    const Vec<D> slip = network.slip(k, stage.velocity);
+    friction[k] = -dot(friction_of(network, k, slip), slip);
   });
   for (std::size_t k = 0; k < noise.size(); ++k)
-    noise[k] = -dot(record.edge_noise[k], slip(record.start.network, k));
+    noise[k] = -dot(record.edge_noise[k], record.start.network.slip(k, stage.velocity));
 
   std::vector<Vec<D>> force(stage.position.size());
   if (!record.edge_noise.empty())
     add_edge_forces<D>(record.start.network, record.edge_noise, force);
   add_friction_forces<D>(network, stage.velocity, force);
-  double walls = 0.0, driven = 0.0, rate = 0.0;
+  add_sliding_friction(network, force);
+  double walls = 0.0, driven = 0.0, shear = 0.0, rate = 0.0;
+  for (std::size_t k = 0; k < network.slip_0.size(); ++k) {
+    const Vec<D> pair = network.f_c[k] * network.e[k];
+    const Vec<D> drag = friction_of(network, k, network.slip(k, stage.velocity));
+    rate -= dot(pair, network.slip_0[k]);
+    shear -= dot(pair + drag, network.slip_0[k]);
+  }
+  for (std::size_t k = 0; k < record.start.network.slip_0.size() && k < noise.size(); ++k)
+    shear -= dot(record.edge_noise[k], record.start.network.slip_0[k]);
   for (std::size_t i = 0; i < force.size(); ++i) {
     const Vec<D>& v = stage.velocity[i];
     rate -= dot(v, stage.potential_force[i]);
     driven += dot(v, stage.driving_force[i]);
-    if (!particles.is_free(i)) walls -= dot(v, force[i] + stage.potential_force[i]);
+    if (particles.is_known(i)) walls -= dot(v, force[i] + stage.potential_force[i]);
+  }
+  const std::vector<std::int32_t> at =
+      particles.bodies.empty() ? std::vector<std::int32_t>{} : particles.index_of_id();
+  for (std::size_t b = 0; b < particles.bodies.size(); ++b) {
+    if (particles.bodies[b].known) continue;
+    std::vector<Vec<D>> arms, velocity;
+    for (const std::int64_t id : particles.bodies[b].members) {
+      const auto i = static_cast<std::size_t>(at[static_cast<std::size_t>(id)]);
+      arms.push_back(stage.position[i]);
+      velocity.push_back(stage.velocity[i]);
+    }
+    find_arms<D>(stage.box, std::vector<Vec<D>>(arms), arms);
+    const RigidMotion<D> motion = rigid_motion<D>(arms, velocity);
+    const RigidLoad<D> load = scene_.body_load(b, stage.time);
+    driven += dot(load.force, motion.velocity) + dot(load.torque, motion.angular);
   }
   const double dissipated = fixed_sum(friction), produced = dissipated + fixed_sum(noise);
   if (dissipated > 0.0)
-    worst_ = std::max(worst_, std::abs(walls + driven - produced - rate) / dissipated);
-  const std::array<double, 4> powers{produced, walls, driven, rate};
+    worst_ = std::max(worst_, std::abs(walls + driven + shear - produced - rate) / dissipated);
+  const std::array<double, 5> powers{produced, walls, driven, shear, rate};
   for (std::size_t k = 0; k < powers.size(); ++k)
     newest_[k] += weight * powers[k] / scene_.fluid_volume();
 }

@@ -106,6 +106,10 @@ typename Grid<D>::Counts read_cells(const Config& entry, const Scene<D>& scene) 
 template <int D>
 std::unique_ptr<Observer<D>> make_divergence(const Config& entry, ObserverSettings settings,
                                              const Scene<D>& scene) {
+  if (scene.box().shear)
+    entry.fail("kind",
+               "under [shear] neighbouring cells of two images slide past each other: use "
+               "walls, or a profile");
   const auto cells = read_cells(entry, scene);
   for (int c = 0; c < D; ++c)
     if (cells[static_cast<std::size_t>(c)] < 3)
@@ -220,7 +224,8 @@ std::unique_ptr<Observer<D>> make_viscosity(const Config& entry, ObserverSetting
   const ViscosityScene kind = viscosity_scene(scene);
   if (kind.kind == ViscosityScene::Kind::none)
     entry.fail("kind",
-               "nothing in this scene shows a viscosity: move a wall, drive the fluid along its "
+               "nothing in this scene shows a viscosity: move a wall, shear it steadily, drive the "
+               "fluid along its "
                "walls or by body_force.wave, or leave a fully periodic fluid of kT > 0 at rest");
   ViscositySettings v;
   if (kind.has_profile()) {
@@ -233,6 +238,8 @@ std::unique_ptr<Observer<D>> make_viscosity(const Config& entry, ObserverSetting
                                      kind.from, kind.to));
     return std::make_unique<Viscosity<D>>(std::move(settings), v, scene, clock.dt);
   }
+  if (!kind.needs_every_step())
+    return std::make_unique<Viscosity<D>>(std::move(settings), v, scene, clock.dt);
   v.window = entry.positive("window", v.window);
   v.fit_from = entry.non_negative("fit_from", 0.4 * v.window);
   if (v.fit_from >= v.window) entry.fail("fit_from", "must be less than window");

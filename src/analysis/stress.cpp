@@ -103,19 +103,84 @@ void add_in_blocks(std::size_t n, std::size_t width, const Item& item, std::vect
   for (std::size_t k = 0; k < blocks.size(); ++k) sum[k % width] += blocks[k];
 }
 
+// Where forces count: at the particles, or, on constituents of bodies whose motion is unknown, at the centres of those. `arm`: from
+// the centre, one per particle, and none at all without bodies.
 template <int D>
-void add_stage_stress(const StressGrid<D>& grid, const Stage<D>& stage, double weight,
-                      std::vector<double>& sum) {
+struct Places {
+  Places(const Particles<D>& particles, const Stage<D>& stage) : position(stage.position) {
+    if (particles.bodies.empty()) return;
+    arm.resize(position.size());
+    const std::vector<std::int32_t> at = particles.index_of_id();
+    for (const RigidBody<D>& body : particles.bodies) {
+      if (body.known) continue;
+      std::vector<Vec<D>> points, arms(body.members.size());
+      for (const std::int64_t id : body.members)
+        points.push_back(position[static_cast<std::size_t>(at[static_cast<std::size_t>(id)])]);
+      find_arms<D>(stage.box, points, arms);
+      for (std::size_t k = 0; k < arms.size(); ++k)
+        arm[static_cast<std::size_t>(at[static_cast<std::size_t>(body.members[k])])] = arms[k];
+    }
+  }
+  Vec<D> at(std::size_t i) const { return arm.empty() ? position[i] : position[i] - arm[i]; }
+  /// From the place of j to that of i.
+  Vec<D> between(const PairNetwork<D>& network, std::size_t k) const {
+    const Vec<D> pair = network.r[k] * network.e[k];
+    if (arm.empty()) return pair;
+    return pair - arm[static_cast<std::size_t>(network.i[k])] +
+           arm[static_cast<std::size_t>(network.j[k])];
+  }
+
+  const std::vector<Vec<D>>& position;
+  std::vector<Vec<D>> arm;
+};
+
+template <int D>
+void add_stage_stress(const StressGrid<D>& grid, const Places<D>& places, const Stage<D>& stage,
+                      double weight, std::vector<double>& sum) {
   const PairNetwork<D>& network = stage.network;
   const auto edge = [&](std::size_t k, double* into) {
-    const Vec<D>& r = stage.position[static_cast<std::size_t>(network.i[k])];
-    const Vec<D> arm = network.r[k] * network.e[k];
+    const Vec<D> r = places.at(static_cast<std::size_t>(network.i[k]));
+    const Vec<D> arm = places.between(network, k);
     if (network.f_c[k] != 0.0)
       grid.add_line(conservative_part, r, arm, arm, (weight * network.f_c[k]) * network.e[k], into);
     grid.add_line(friction_part, r, arm, arm,
                   weight * friction_of<D>(network, k, network.slip(k, stage.velocity)), into);
   };
   add_in_blocks(network.i.size(), grid.width(), edge, sum);
+}
+
+// N kT I, or with mass sum m v v; a body is one particle at its centre.
+template <int D>
+void add_kinetic(const StressGrid<D>& grid, const Places<D>& places, const Scene<D>& scene,
+                 const Particles<D>& particles, const StepRecord<D>& record, double* sum) {
+  const double mass = scene.settings().mass;
+  const bool moving = mass > 0.0 && !record.v_start.empty();
+  const auto add = [&](const Vec<D>& r, double m, Vec<D> v) {
+    if (moving) {
+      v -= record.start.box.flow_velocity(r);
+      grid.add_point(kinetic_part, r, m * v, v, sum);
+      return;
+    }
+    for (int c = 0; c < D; ++c) {
+      Vec<D> unit{};
+      unit[c] = 1.0;
+      grid.add_point(kinetic_part, r, scene.largest_kT() * unit, unit, sum);
+    }
+  };
+  for (std::size_t i = 0; i < places.position.size(); ++i)
+    if (particles.is_free(i)) add(places.position[i], mass, moving ? record.v_start[i] : Vec<D>{});
+  if (particles.bodies.empty()) return;
+  const std::vector<std::int32_t> at = particles.index_of_id();
+  for (const RigidBody<D>& body : particles.bodies) {
+    if (body.known) continue;
+    const auto n = static_cast<double>(body.members.size());
+    Vec<D> v{};
+    for (const std::int64_t id : body.members)
+      if (moving)
+        v += (1.0 / n) * record.v_start[static_cast<std::size_t>(at[static_cast<std::size_t>(id)])];
+    add(places.at(static_cast<std::size_t>(at[static_cast<std::size_t>(body.members[0])])),
+        mass * n, v);
+  }
 }
 
 }  // namespace
@@ -126,30 +191,18 @@ std::vector<double> stress_of(const Scene<D>& scene, const Particles<D>& particl
   const StressGrid<D> grid(scene, bins);
   std::vector<double> sum(grid.width(), 0.0);
   const Stage<D>& start = record.start;
-  const double mass = scene.settings().mass, kT = scene.largest_kT();
-  const bool moving = mass > 0.0 && !record.v_start.empty();
-  for (std::size_t i = 0; i < start.position.size(); ++i) {
-    if (!particles.is_free(i)) continue;
-    if (moving) {
-      grid.add_point(kinetic_part, start.position[i], mass * record.v_start[i], record.v_start[i],
-                     sum.data());
-      continue;
-    }
-    for (int c = 0; c < D; ++c) {
-      Vec<D> unit{};
-      unit[c] = 1.0;
-      grid.add_point(kinetic_part, start.position[i], kT * unit, unit, sum.data());
-    }
-  }
+  const Places<D> places(particles, start);
+  add_kinetic(grid, places, scene, particles, record, sum.data());
   // Monte Carlo has edges and no velocities.
   if (start.velocity.size() == start.position.size() && record.start_weight > 0.0)
-    add_stage_stress(grid, start, record.start_weight, sum);
+    add_stage_stress(grid, places, start, record.start_weight, sum);
   if (record.has_corrector())
-    add_stage_stress(grid, record.corrector, 1.0 - record.start_weight, sum);
+    add_stage_stress(grid, Places<D>(particles, record.corrector), record.corrector,
+                     1.0 - record.start_weight, sum);
   const auto noise = [&](std::size_t k, double* into) {
-    const Vec<D> arm = start.network.r[k] * start.network.e[k];
-    grid.add_line(noise_part, start.position[static_cast<std::size_t>(start.network.i[k])], arm,
-                  arm, record.edge_noise[k], into);
+    const Vec<D> arm = places.between(start.network, k);
+    grid.add_line(noise_part, places.at(static_cast<std::size_t>(start.network.i[k])), arm, arm,
+                  record.edge_noise[k], into);
   };
   add_in_blocks(record.edge_noise.size(), grid.width(), noise, sum);
 

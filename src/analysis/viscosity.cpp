@@ -107,6 +107,13 @@ ViscosityScene viscosity_scene(const Scene<D>& scene) {
   using Kind = ViscosityScene::Kind;
   const SceneSettings<D>& s = scene.settings();
   ViscosityScene v;
+  if (const auto& shear = s.box.shear) {
+    v.axis = shear->gradient;
+    v.component = shear->flow;
+    v.to = s.box.size[v.axis];
+    if (shear->frequency == 0.0 && shear->rate != 0.0) v.kind = Kind::images;
+    return v;
+  }
   if (sheared_across(s, v)) {
     v.kind = Kind::sheared;
   } else if (s.force_wave.number > 0) {
@@ -149,12 +156,12 @@ Viscosity<D>::Viscosity(ObserverSettings settings, const ViscositySettings& visc
     parts_.push_back(std::make_unique<Profile<D>>(
         ObserverSettings{.kind = "profile", .name = "profile", .every = every}, p, scene));
   }
-  if (kind_.kind == Kind::sheared) {
+  if (kind_.kind == Kind::sheared)
     parts_.push_back(std::make_unique<WallForce<D>>(
         ObserverSettings{.kind = "wall-force", .name = "wall", .every = every}, scene));
+  if (kind_.kind == Kind::sheared || kind_.kind == Kind::images)
     parts_.push_back(std::make_unique<Stress<D>>(
         ObserverSettings{.kind = "stress", .name = "stress", .every = every}, StressBins{}, scene));
-  }
   if (kind_.kind == Kind::at_rest)
     helfand_.emplace(Helfand::Settings{.window = viscosity.window,
                                        .fit_from = viscosity.fit_from,
@@ -199,6 +206,12 @@ std::vector<Scalar> Viscosity<D>::routes(Results& results) const {
   Results parts;
   for (const auto& part : parts_) part->add_results(parts);
   results.notes.insert(results.notes.end(), parts.notes.begin(), parts.notes.end());
+  const char axis = "xyz"[kind_.axis], component = "xyz"[kind_.component];
+  const Scalar* stress = parts.find(fmt::format("stress.{}{}", axis, component));
+  if (kind_.kind == ViscosityScene::Kind::images) {
+    const Scalar rate{"rate", scene_.box().shear->rate, 0.0};
+    return {quotient(name + ".stress", stress, &rate)};
+  }
   if (kind_.kind != ViscosityScene::Kind::sheared) {
     const Scalar* scalar = parts.find("profile.viscosity");
     const bool sine = kind_.kind == ViscosityScene::Kind::sine;
@@ -209,10 +222,9 @@ std::vector<Scalar> Viscosity<D>::routes(Results& results) const {
   const Scalar* slope = parts.find("profile.slope");
   if (slope != nullptr)
     results.scalars.push_back({name + ".shear_rate", slope->mean, slope->standard_error});
-  const char axis = "xyz"[kind_.axis], component = "xyz"[kind_.component];
   return {
       quotient(name + ".wall", parts.find(fmt::format("wall.shear_stress.{}", component)), slope),
-      quotient(name + ".stress", parts.find(fmt::format("stress.{}{}", axis, component)), slope)};
+      quotient(name + ".stress", stress, slope)};
 }
 
 template <int D>

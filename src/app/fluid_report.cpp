@@ -94,6 +94,8 @@ FlowScale flow_scale(const Scene<D>& scene, double eta) {
   using Kind = ViscosityScene::Kind;
   const SceneSettings<D>& s = scene.settings();
   const ViscosityScene v = viscosity_scene(scene);
+  if (v.kind == Kind::images)
+    return {0.5 * std::abs(s.box.shear->rate) * s.box.size[v.axis], s.box.size[v.axis]};
   const double width = v.to - v.from + 2.0 * scene.model().cutoff();
   if (v.kind == Kind::sheared) {
     const auto wall = [&](bool high) {

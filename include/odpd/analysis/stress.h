@@ -6,7 +6,11 @@
 //
 // r: from j to i, F: force on i. F_B acts in both stages and always with the arm of the step's start: with the arms of the stages it
 // would carry (1 - b) c 2 n kT more, c dt being the reach of the first stage, n kT for both schemes. K = N kT I at mass 0; with mass
-// sum m v v of the velocities at the step's start, which under flow holds the flow's own momentum flux.
+// sum m v v of the velocities at the step's start, less those of the flow of [shear]; under other flows it holds
+// their own momentum flux.
+//
+// Forces on constituents of a rigid body of unknown motion act at its centre, which is one particle in K (molecular stress): the
+// forces that hold it together then need not be known.
 //
 // V: the volume between the wall surfaces; of an edge that leaves it, the part of its line inside counts, and of the particles those
 // inside. In the same way with bins along an axis. Scalars <name>.xx, .xy, ... (all D^2), <name>.pressure = -trace/D and its parts

@@ -2,7 +2,7 @@
 // Viscosity by every route that the scene allows, each from observers that say how they measure:
 //
 //   <name>.wall     shear stress on two facing walls / slope of the linear velocity profile      (wall_force.h, profile.h)
-//   <name>.stress   shear stress between the walls / that slope                                  (stress.h)
+//   <name>.stress   shear stress between the walls / that slope, or in the box / the rate of [shear]  (stress.h)
 //   <name>.profile  curvature of the profile under a body force, n f/(-2 c_2)                    (profile.h)
 //   <name>.sine     amplitude under a sinusoidal force, n F L^2/(4 pi^2 k^2 A), k waves in L     (profile.h)
 //   <name>.helfand  growth of the integrated stress in a fully periodic box at rest              (helfand.h)
@@ -21,15 +21,17 @@ namespace odpd {
 
 /// How a scene shows its viscosity.
 struct ViscosityScene {
-  enum class Kind { none, sheared, parabola, sine, at_rest } kind = Kind::none;
+  enum class Kind { none, images, sheared, parabola, sine, at_rest } kind = Kind::none;
   int axis = 1;                 ///< of the profile
   int component = 0;            ///< of the velocity
   double from = 0.0, to = 0.0;  ///< coordinates of the fit
   bool needs_every_step() const { return kind == Kind::at_rest; }
-  bool has_profile() const { return kind != Kind::none && kind != Kind::at_rest; }
+  bool has_profile() const {
+    return kind == Kind::sheared || kind == Kind::parabola || kind == Kind::sine;
+  }
 };
 
-/// The first that applies: facing walls that move differently, a sinusoidal force, a uniform force between walls or in a region, a
+/// The first that applies: steady [shear], facing walls that move differently, a sinusoidal force, a uniform force between walls or in a region, a
 /// fully periodic box at rest with kT > 0.
 template <int D>
 ViscosityScene viscosity_scene(const Scene<D>& scene);
