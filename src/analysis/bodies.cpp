@@ -48,10 +48,10 @@ Bodies<D>::Bodies(ObserverSettings settings, BodiesSettings bodies, const Scene<
       bins_(static_cast<std::size_t>(std::llround(bodies.r_max / bodies.bin))),
       average_(scene.settings().bodies.size() * width + D),
       density_(scene.settings().bodies.size() * bins_),
-      places_(bodies.window, bodies.fit_from, dt * static_cast<double>(this->settings().every),
-              scene.settings().bodies.size()),
-      turns_(bodies.window, bodies.fit_from, dt * static_cast<double>(this->settings().every),
-             scene.settings().bodies.size()) {
+      places_(this->settings().name, bodies.window, bodies.fit_from,
+              dt * static_cast<double>(this->settings().every), scene.settings().bodies.size()),
+      turns_(this->settings().name, bodies.window, bodies.fit_from,
+             dt * static_cast<double>(this->settings().every), scene.settings().bodies.size()) {
   share_.assign(scene.settings().bodies.size(), 0.0);
   for (std::size_t b = 0; b < scene.particles().bodies.size(); ++b) {
     kind_.push_back(scene.body_kind(b));

@@ -1,5 +1,7 @@
 #include "odpd/analysis/displacements.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,8 +10,10 @@
 
 namespace odpd {
 
-Displacements::Displacements(double window, double fit_from, double lag_time, std::size_t kinds)
-    : fit_from_(fit_from),
+Displacements::Displacements(std::string owner, double window, double fit_from, double lag_time,
+                             std::size_t kinds)
+    : owner_(std::move(owner)),
+      fit_from_(fit_from),
       lag_time_(lag_time),
       lags_(std::max<std::int64_t>(1, std::llround(window / lag_time))),
       kinds_(kinds),
@@ -83,8 +87,9 @@ void Displacements::load(const StateReader& in, const std::string& prefix,
       !(origin_.size() == coordinates || origin_.empty()) ||
       window_.size() != static_cast<std::size_t>(lags_) * kinds_)
     throw IoError(
-        "the checkpoint's displacements do not fit the case's particles and window: it is damaged "
-        "or of another case");
+        fmt::format("the checkpoint's displacements '{}' do not fit the case's particles and "
+                    "window: it is damaged or of another case",
+                    owner_));
   lag_ = lag[0];
   curve_.load(in, prefix + "curve");
   diffusion_.load(in, prefix + "diffusion");

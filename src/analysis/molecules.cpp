@@ -40,8 +40,8 @@ MoleculeStatistics<D>::MoleculeStatistics(ObserverSettings settings, MsdSettings
       in_time_(in_time),
       population_(scene.settings().molecules.size(), 0.0),
       shape_(shape_columns * population_.size()),
-      displacements_(msd_.window, msd_.fit_from, dt * static_cast<double>(this->settings().every),
-                     population_.size()) {
+      displacements_(this->settings().name, msd_.window, msd_.fit_from,
+                     dt * static_cast<double>(this->settings().every), population_.size()) {
   for (const Molecule& m : scene.molecules()) population_[m.kind] += 1.0;
   for (const auto& m : scene.settings().molecules) tree_.push_back(bond_tree(m));
 }

@@ -12,8 +12,8 @@ Msd<D>::Msd(ObserverSettings settings, MsdSettings msd, const Scene<D>& scene, d
       msd_(std::move(msd)),
       scene_(scene),
       species_(scene.settings().species.size()),
-      displacements_(msd_.window, msd_.fit_from, dt * static_cast<double>(this->settings().every),
-                     species_) {}
+      displacements_(this->settings().name, msd_.window, msd_.fit_from,
+                     dt * static_cast<double>(this->settings().every), species_) {}
 
 template <int D>
 void Msd<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>&) {

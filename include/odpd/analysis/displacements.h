@@ -15,8 +15,9 @@ namespace odpd {
 
 class Displacements {
  public:
-  /// window, fit_from, lag_time: longest lag, shortest lag of the slope, time between samples.
-  Displacements(double window, double fit_from, double lag_time, std::size_t kinds);
+  /// window, fit_from, lag_time: longest lag, shortest lag of the slope, time between samples; `owner`: for messages.
+  Displacements(std::string owner, double window, double fit_from, double lag_time,
+                std::size_t kinds);
 
   /// One sample: `width` coordinates per entity, unwrapped, entities in the same order every time; kind[n] < 0: not counted.
   /// `components` of the coordinates count. True when it completed a window.
@@ -40,6 +41,7 @@ class Displacements {
  private:
   void finish_window(std::span<const double> population, std::size_t components);
 
+  std::string owner_;
   double fit_from_, lag_time_;
   std::int64_t lags_;
   std::size_t kinds_;
