@@ -8,6 +8,36 @@
 
 namespace odpd {
 
+namespace {
+
+// Power of forces and torques on bodies. The random torque on a body is that with the arms of the step's start, whatever the stage:
+// `velocity` becomes that of the constituents if they stood there.
+template <int D>
+double body_power(const Scene<D>& scene, const Particles<D>& particles, const StepRecord<D>& record,
+                  const Stage<D>& stage, std::vector<Vec<D>>& velocity) {
+  if (particles.bodies.empty()) return 0.0;
+  double power = 0.0;
+  const std::vector<std::int32_t> index = particles.index_of_id();
+  for (std::size_t b = 0; b < particles.bodies.size(); ++b) {
+    if (particles.bodies[b].known) continue;
+    std::vector<std::size_t> at;
+    std::vector<Vec<D>> arms, of_body;
+    for (const std::int64_t id : particles.bodies[b].members) {
+      at.push_back(static_cast<std::size_t>(index[static_cast<std::size_t>(id)]));
+      arms.push_back(stage.arms[at.back()]);
+      of_body.push_back(stage.velocity[at.back()]);
+    }
+    const RigidMotion<D> motion = rigid_motion<D>(arms, of_body);
+    for (const std::size_t i : at)
+      velocity[i] += swing(motion.angular, record.start.arms[i] - stage.arms[i]);
+    const RigidLoad<D> load = scene.body_load(b, stage.time);
+    power += dot(load.force, motion.velocity) + dot(load.torque, motion.angular);
+  }
+  return power;
+}
+
+}  // namespace
+
 template <int D>
 void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
                         const StepRecord<D>& record, double weight) {
@@ -18,8 +48,6 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
     const Vec<D> slip = network.slip(k, stage.velocity);
     friction[k] = -dot(friction_of(network, k, slip), slip);
   });
-  for (std::size_t k = 0; k < noise.size(); ++k)
-    noise[k] = -dot(record.edge_noise[k], record.start.network.slip(k, stage.velocity));
 
   std::vector<Vec<D>> force(stage.position.size());
   if (!record.edge_noise.empty())
@@ -41,21 +69,10 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
     driven += dot(v, stage.driving_force[i]);
     if (particles.is_known(i)) walls -= dot(v, force[i] + stage.potential_force[i]);
   }
-  const std::vector<std::int32_t> at =
-      particles.bodies.empty() ? std::vector<std::int32_t>{} : particles.index_of_id();
-  for (std::size_t b = 0; b < particles.bodies.size(); ++b) {
-    if (particles.bodies[b].known) continue;
-    std::vector<Vec<D>> arms, velocity;
-    for (const std::int64_t id : particles.bodies[b].members) {
-      const auto i = static_cast<std::size_t>(at[static_cast<std::size_t>(id)]);
-      arms.push_back(stage.position[i]);
-      velocity.push_back(stage.velocity[i]);
-    }
-    find_arms<D>(stage.box, std::vector<Vec<D>>(arms), arms);
-    const RigidMotion<D> motion = rigid_motion<D>(arms, velocity);
-    const RigidLoad<D> load = scene_.body_load(b, stage.time);
-    driven += dot(load.force, motion.velocity) + dot(load.torque, motion.angular);
-  }
+  std::vector<Vec<D>> velocity = stage.velocity;
+  driven += body_power(scene_, particles, record, stage, velocity);
+  for (std::size_t k = 0; k < noise.size(); ++k)
+    noise[k] = -dot(record.edge_noise[k], record.start.network.slip(k, velocity));
   const double dissipated = fixed_sum(friction), produced = dissipated + fixed_sum(noise);
   if (dissipated > 0.0)
     worst_ = std::max(worst_, std::abs(walls + driven + shear - produced - rate) / dissipated);

@@ -103,35 +103,28 @@ void add_in_blocks(std::size_t n, std::size_t width, const Item& item, std::vect
   for (std::size_t k = 0; k < blocks.size(); ++k) sum[k % width] += blocks[k];
 }
 
-// Where forces count: at the particles, or, on constituents of bodies whose motion is unknown, at the centres of those. `arm`: from
-// the centre, one per particle, and none at all without bodies.
+// Where forces count: at the particles, or, on constituents of bodies whose motion is unknown, at the centres of those.
 template <int D>
-struct Places {
-  Places(const Particles<D>& particles, const Stage<D>& stage) : position(stage.position) {
-    if (particles.bodies.empty()) return;
-    arm.resize(position.size());
-    const std::vector<std::int32_t> at = particles.index_of_id();
-    for (const RigidBody<D>& body : particles.bodies) {
-      if (body.known) continue;
-      std::vector<Vec<D>> points, arms(body.members.size());
-      for (const std::int64_t id : body.members)
-        points.push_back(position[static_cast<std::size_t>(at[static_cast<std::size_t>(id)])]);
-      find_arms<D>(stage.box, points, arms);
-      for (std::size_t k = 0; k < arms.size(); ++k)
-        arm[static_cast<std::size_t>(at[static_cast<std::size_t>(body.members[k])])] = arms[k];
-    }
-  }
-  Vec<D> at(std::size_t i) const { return arm.empty() ? position[i] : position[i] - arm[i]; }
+class Places {
+ public:
+  Places(const Particles<D>& particles, const Stage<D>& stage)
+      : particles_(particles), stage_(stage) {}
+  Vec<D> at(std::size_t i) const { return stage_.position[i] - arm(i); }
   /// From the place of j to that of i.
   Vec<D> between(const PairNetwork<D>& network, std::size_t k) const {
     const Vec<D> pair = network.r[k] * network.e[k];
-    if (arm.empty()) return pair;
-    return pair - arm[static_cast<std::size_t>(network.i[k])] +
-           arm[static_cast<std::size_t>(network.j[k])];
+    if (stage_.arms.empty()) return pair;
+    return pair - arm(static_cast<std::size_t>(network.i[k])) +
+           arm(static_cast<std::size_t>(network.j[k]));
   }
 
-  const std::vector<Vec<D>>& position;
-  std::vector<Vec<D>> arm;
+ private:
+  Vec<D> arm(std::size_t i) const {
+    return stage_.arms.empty() || particles_.group[i] >= 0 ? Vec<D>{} : stage_.arms[i];
+  }
+
+  const Particles<D>& particles_;
+  const Stage<D>& stage_;
 };
 
 template <int D>
@@ -167,8 +160,8 @@ void add_kinetic(const StressGrid<D>& grid, const Places<D>& places, const Scene
       grid.add_point(kinetic_part, r, scene.largest_kT() * unit, unit, sum);
     }
   };
-  for (std::size_t i = 0; i < places.position.size(); ++i)
-    if (particles.is_free(i)) add(places.position[i], mass, moving ? record.v_start[i] : Vec<D>{});
+  for (std::size_t i = 0; i < particles.group.size(); ++i)
+    if (particles.is_free(i)) add(places.at(i), mass, moving ? record.v_start[i] : Vec<D>{});
   if (particles.bodies.empty()) return;
   const std::vector<std::int32_t> at = particles.index_of_id();
   for (const RigidBody<D>& body : particles.bodies) {

@@ -44,6 +44,7 @@ odpd::StepRecord<D> record(const odpd::Scene<D>& scene) {
   odpd::StepRecord<D> record;
   record.dt = 0.01;
   odpd::Stage<D>& stage = record.start;
+  stage.box = scene.box();
   stage.position = scene.particles().position;
   odpd::PairList<D> list(scene.box(), scene.model().cutoff(), 0.0);
   list.update(stage.position);

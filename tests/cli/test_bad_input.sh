@@ -123,6 +123,7 @@ expect_error 1 run box --set 'observe=[{kind="viscosity", every=2}]' -- every 'e
 expect_error 1 run channel --set 'observe=[{kind="viscosity", window=1.0}]' -- window
 expect_error 1 run box --set fluid.mass=1.0 --set 'observe=[{kind="heat"}]' -- heat fluid.mass
 expect_error 1 run box --set 'observe=[{kind="divergence", bins=[2.0, 4.0]}]' -- bins 3
+expect_error 1 run box --set 'shear={rate=1.0}' --set 'observe=[{kind="divergence", bins=[4.0, 4.0]}]' -- kind shear
 expect_error 1 run box --set 'observe=[{kind="profile", fit="sine"}]' -- fit body_force.wave
 
 # --- contradictions in the scene ---
