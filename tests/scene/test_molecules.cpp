@@ -58,7 +58,9 @@ void expect_molecules(const Scene<D>& scene, std::int64_t fluid) {
   for (const odpd::Bond& bond : scene.bonds()) {
     const double r = norm(unwrapped(scene, bond.i) - unwrapped(scene, bond.j));
     most = std::max(most, r);
-    if (bond.p.law == odpd::BondLaw::harmonic) EXPECT_NEAR(r, 0.25, 0.05);
+    if (bond.p.law == odpd::BondLaw::harmonic) {
+      EXPECT_NEAR(r, 0.25, 0.05);
+    }
   }
   EXPECT_LT(most, 1.0);
   EXPECT_GT(most, 0.3);
