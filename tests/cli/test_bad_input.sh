@@ -242,6 +242,7 @@ expect_error 1 run box/checked.toml --set check.0.relative_tolerance=0.1 -- chec
 # Nothing that stands in the case file itself was found out only after something was written.
 expect test ! -e runs
 # --- molecules and bonds ---
+write_periodic box
 cp -r box chain
 cat >>chain/case.toml <<'CASE'
 

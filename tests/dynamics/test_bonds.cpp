@@ -212,9 +212,7 @@ TYPED_TEST(BondedEnergyTest, OfATrialMoveIsThatOfTheEdges) {
       list.update(particles.position);
       PairNetwork<D> network;
       model.write_edges(list, box, particles.position, particles, network);
-      double u = 0.0;
-      u += network.u.sum();
-      return u;
+      return network.u.sum();
     };
     LocalEnergy<D> local(box, model, nothing, particles);
     for (const std::int64_t id : {3, 5, 6, 20}) {
