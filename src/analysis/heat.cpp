@@ -13,14 +13,12 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
                         const StepRecord<D>& record, double weight) {
   const PairNetwork<D>& network = stage.network;
   const auto slip = [&](const PairNetwork<D>& edges, std::size_t k) {
-    return stage.velocity[static_cast<std::size_t>(edges.i[k])] -
-           stage.velocity[static_cast<std::size_t>(edges.j[k])];
+    return edges.slip(k, stage.velocity);
   };
   std::vector<double> friction(network.i.size()), noise(record.edge_noise.size());
   parallel_for(network.size(), [&](std::int64_t edge) {
     const auto k = static_cast<std::size_t>(edge);
-    friction[k] =
-        -dot(friction_of<D>(network, k, network.slip(k, stage.velocity)), slip(network, k));
+    friction[k] = -dot(friction_of<D>(network, k, slip(network, k)), slip(network, k));
   });
   for (std::size_t k = 0; k < noise.size(); ++k)
     noise[k] = -dot(record.edge_noise[k], slip(record.start.network, k));
@@ -29,6 +27,7 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
   if (!record.edge_noise.empty())
     add_edge_forces<D>(record.start.network, record.edge_noise, force);
   add_friction_forces<D>(network, stage.velocity, force);
+  add_sliding_friction(network, force);
   double walls = 0.0, driven = 0.0, rate = 0.0;
   for (std::size_t i = 0; i < force.size(); ++i) {
     const Vec<D>& v = stage.velocity[i];
@@ -36,6 +35,14 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
     driven += dot(v, stage.driving_force[i]);
     if (!particles.is_free(i)) walls -= dot(v, force[i] + stage.potential_force[i]);
   }
+  // The images that slide do work on what they meet, as a driving force does.
+  for (std::size_t k = 0; k < network.slip_0.size(); ++k) {
+    const double energy = -network.f_c[k] * dot(network.e[k], network.slip_0[k]);
+    rate += energy;
+    driven += energy - dot(friction_of<D>(network, k, slip(network, k)), network.slip_0[k]);
+  }
+  for (std::size_t k = 0; k < noise.size() && !network.slip_0.empty(); ++k)
+    driven -= dot(record.edge_noise[k], record.start.network.slip_0[k]);
   const double dissipated = fixed_sum(friction), produced = dissipated + fixed_sum(noise);
   if (dissipated > 0.0)
     worst_ = std::max(worst_, std::abs(walls + driven - produced - rate) / dissipated);
