@@ -55,7 +55,7 @@ std::size_t Rdf<D>::pair_index(std::int32_t a, std::int32_t b) const {
 
 template <int D>
 void Rdf<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
-  const Box<D>& box = record.start.box;
+  const Box<D> box = scene_.box().at(record.start.time);
   PairList<D> list(box, r_max_, 0.0);
   const auto& r = record.start.position;
   list.update(r);

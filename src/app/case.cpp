@@ -181,6 +181,24 @@ void check_box(const Frame& frame, const Box<D>& box, const std::string& file) {
           frame.box_size[c], "xyz"[c], box.size.x[c], fmt::join(frame.box_size, ", ")));
 }
 
+// The offset of the images in a tilted cell, as sheared runs write it.
+template <int D>
+void take_offset(const Frame& frame, Box<D>& box, const std::string& file) {
+  if (frame.edges.empty()) return;
+  for (int row = 0; row < D; ++row)
+    for (int c = 0; c < D; ++c) {
+      const double value = frame.edges[static_cast<std::size_t>(row * D + c)];
+      if (row == c || value == 0.0) continue;
+      if (!box.shear || box.shear->gradient != row || box.shear->flow != c)
+        throw ConfigError(fmt::format(
+            "{}: its box is tilted, as sheared runs leave it: the images along {} are displaced by "
+            "{} along {}; start from it with [shear] flow = \"{}\", gradient = \"{}\"",
+            file, "xyz"[row], value, "xyz"[c], "xyz"[c], "xyz"[row]));
+      box.shear->start = value;
+    }
+  box = box.at(0.0);
+}
+
 template <int D>
 void read_start_h5md(SceneSettings<D>& scene) {
   const Frame frame = read_h5md(scene.start_file);
@@ -189,6 +207,7 @@ void read_start_h5md(SceneSettings<D>& scene) {
         fmt::format("{} holds positions in {} dimensions, the case has dimension = {}",
                     scene.start_file, frame.dimension, D));
   check_box(frame, scene.box, scene.start_file);
+  take_offset(frame, scene.box, scene.start_file);
   const std::size_t n = frame.position.size() / D;
   for (std::size_t k = 0; k < n; ++k) {
     // The walls of an odpd trajectory are placed by the case itself.

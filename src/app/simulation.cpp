@@ -237,6 +237,11 @@ Frame Simulation<D>::frame() const {
     frame.box_size.push_back(scene_.box().size[c]);
     frame.periodic.push_back(scene_.box().is_periodic(c));
   }
+  if (const Box<D> box = scene_.box().at(clock_.time()); box.shear) {
+    frame.edges.assign(static_cast<std::size_t>(D * D), 0.0);
+    for (int c = 0; c < D; ++c) frame.edges[static_cast<std::size_t>(c * (D + 1))] = box.size[c];
+    frame.edges[static_cast<std::size_t>(box.shear->gradient * D + box.shear->flow)] = box.offset;
+  }
   for (const SpeciesSettings& s : scene_.settings().species) frame.species_names.push_back(s.name);
   frame.bonds = bond_ends(scene_.bonds());
   for (const std::int32_t index : particles.index_of_id()) {
@@ -275,6 +280,8 @@ void Simulation<D>::save(CheckpointWriter& out) const {
                                                        s.clamped, s.fallbacks});
   run.write("solver_worst_residual", std::vector<double>{s.worst_residual});
   run.write_text("solver_problem", s.problem);
+  if (const auto& shear = scene_.box().shear)
+    run.write("shear_start", std::vector<double>{shear->start});
   run.write_text("instructions", std::string(isa_name(isa())));
   if (!scene_.bonds().empty()) run.write("bonds", bond_ends(scene_.bonds()));
   dynamics_.solver().save(out.component("solver"));
@@ -299,6 +306,12 @@ void Simulation<D>::load(CheckpointReader& in) {
   if (!scene_.bonds().empty() && run.read_integers("bonds") != bond_ends(scene_.bonds()))
     throw ConfigError(
         "the checkpoint has other bonds than the file of [bonds] now: restore that file");
+  if (const auto& shear = scene_.box().shear;
+      shear && run.read_doubles("shear_start").at(0) != shear->start)
+    throw ConfigError(
+        fmt::format("the images of the checkpoint's run began with an offset of {}, those of "
+                    "start.file with {}: start.file must be the one of that run",
+                    run.read_doubles("shear_start").at(0), shear->start));
   const std::vector<std::int64_t> counts = run.read_integers("counts");
   clock_.step = counts.at(0);
   if (clock_.step > clock_.total_steps)

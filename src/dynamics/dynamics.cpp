@@ -98,7 +98,7 @@ void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage
   }
   const PhaseTimer timer(phases_, Phase::edges);
   model_.write_edges(list_, stage.box, stage.position, particles_, stage.network);
-  refer_slips_to_start(stage);
+  write_slips(stage);
   if (model_.conservative()) add_conservative_forces(stage.network, stage.potential_force);
   surroundings_.add_potential_forces(particles_, stage.position, stage.potential_force);
   surroundings_.add_driving_forces(particles_, stage.position, time, stage.driving_force);
@@ -118,15 +118,33 @@ void Dynamics<D>::wrap_sheared(Stage<D>& stage) const {
 }
 
 template <int D>
-void Dynamics<D>::refer_slips_to_start(Stage<D>& stage) const {
+void Dynamics<D>::write_slips(Stage<D>& stage) const {
   PairNetwork<D>& network = stage.network;
-  if (network.slip_0.empty()) return;
+  network.slip_0.resize(box_.shear ? network.i.size() : 0);
+  if (!box_.shear) return;
   parallel_for(network.size(), [&](std::int64_t edge) {
     const auto k = static_cast<std::size_t>(edge);
-    const std::int32_t up = stage.crossed[static_cast<std::size_t>(network.i[k])] -
-                            stage.crossed[static_cast<std::size_t>(network.j[k])];
-    if (up != 0) network.slip_0[k][box_.shear->flow] -= up * stage.box.sliding;
+    const auto i = static_cast<std::size_t>(network.i[k]),
+               j = static_cast<std::size_t>(network.j[k]);
+    const int up = stage.box.images_up(stage.position[i] - stage.position[j]) + stage.crossed[i] -
+                   stage.crossed[j];
+    network.slip_0[k] = Vec<D>{};
+    network.slip_0[k][box_.shear->flow] = -up * stage.box.sliding;
   });
+}
+
+/// Implicit stiffness acts on the whole slip; what slip_0 gives is known.
+template <int D>
+auto Dynamics<D>::without_sliding_springs(const Stage<D>& stage, const StepWeights& weights,
+                                          Unknowns load) -> Unknowns {
+  const Unknowns rest(load.size(), 0.0);
+  const auto subtract = [&](double time, const Unknowns& springs) {
+    for (std::size_t k = 0; k < load.size(); ++k) load[k] -= time * springs[k];
+  };
+  const double more = weights.bond_time - weights.stiffness_time;
+  if (weights.stiffness_time > 0.0) subtract(weights.stiffness_time, spring(stage, rest));
+  if (more != 0.0 && stage.network.bonds > 0) subtract(more, bond_spring(stage, rest));
+  return load;
 }
 
 template <int D>
@@ -266,7 +284,8 @@ void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights
   {
     const PhaseTimer timer(phases_, Phase::solve);
     solver_->bind(system);
-    stage.report = solver_->solve(load, guess);
+    stage.report =
+        solver_->solve(box_.shear ? without_sliding_springs(stage, weights, load) : load, guess);
   }
   note(stage.report);
   const double shift = weights.inertia + settings_.zeta_0;
@@ -371,11 +390,11 @@ std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, 
 template <int D>
 std::int64_t Dynamics<D>::move(const std::vector<Vec<D>>& velocity, double dt, double t) {
   check_paths(velocity, dt);
+  const Box<D> box = box_.at(t + dt);
+  faces_crossed_.resize(box.shear ? velocity.size() : 0);
   std::vector<std::size_t> moved;
   for (std::size_t b = 0; b < particles_.bodies.size(); ++b)
     if (advance(b, velocity, dt, particles_.bodies[b].pose)) moved.push_back(b);
-  const Box<D> box = box_.at(t + dt);
-  faces_crossed_.resize(box.shear ? velocity.size() : 0);
   const auto n = static_cast<std::int64_t>(velocity.size());
   std::vector<std::int64_t> caught(ranges(n), 0);
   parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {

@@ -129,11 +129,13 @@ class FrameReader {
     } else {
       // Edge vectors, one per row.
       sized("box/edges", values, dimension * dimension);
+      bool tilted = false;
       for (std::size_t i = 0; i < values.size(); ++i) {
         const bool diagonal = i % (dimension + 1) == 0;
         if (diagonal) frame.box_size.push_back(values[i]);
-        if (!diagonal && values[i] != 0.0) fail("box/edges", "is a tilted box");
+        tilted = tilted || (!diagonal && values[i] != 0.0);
       }
+      if (tilted) frame.edges = values;
     }
     const auto boundary = reader_.text_attribute(group_ + "/box", "boundary");
     for (std::size_t c = 0; c < dimension; ++c) {

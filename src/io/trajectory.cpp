@@ -100,7 +100,9 @@ void TrajectorySegments::open_box(const Frame& frame) {
   image_->group(box);
   image_->attribute(box, "dimension", std::int64_t{frame.dimension});
   image_->attribute(box, "boundary", boundary);
-  create_element(*image_, box + "/edges", {frame.dimension}, false);
+  std::vector<std::int64_t> shape{frame.dimension};
+  if (!frame.edges.empty()) shape.push_back(frame.dimension);
+  create_element(*image_, box + "/edges", shape, false);
 }
 
 void TrajectorySegments::append(const Frame& frame) {
@@ -111,7 +113,8 @@ void TrajectorySegments::append(const Frame& frame) {
   image_->append_row(group + "/position/value", frame.position);
   image_->append_row(group + "/image/value", frame.image);
   image_->append_row(group + "/velocity/value", frame.velocity);
-  image_->append_row(group + "/box/edges/value", frame.box_size);
+  image_->append_row(group + "/box/edges/value",
+                     frame.edges.empty() ? frame.box_size : frame.edges);
 }
 
 void TrajectorySegments::write_single(const std::string& name, const Frame& frame) const {

@@ -69,8 +69,8 @@ Vec<D> slip_of(const PairNetwork<D>& network, std::size_t k, std::span<const Vec
 // Force on i of the stiffness of edge k.
 template <int D>
 Vec<D> spring_of(const PairNetwork<D>& network, std::size_t k, std::span<const Vec<D>> velocity) {
-  const Vec<D> slip = slip_of(network, k, velocity);
-  return -std::max(network.k_c[k], 0.0) * dot(slip, network.e[k]) * network.e[k];
+  return -std::max(network.k_c[k], 0.0) * dot(network.slip(k, velocity), network.e[k]) *
+         network.e[k];
 }
 
 }  // namespace

@@ -81,7 +81,6 @@ class Writer {
       });
     }
     network_.index_rows();
-    write_slips();
   }
 
  private:
@@ -170,18 +169,6 @@ class Writer {
     done = end;
     pairs.size = 0;
     return outside;
-  }
-
-  void write_slips() {
-    network_.slip_0.resize(box_.shear ? network_.i.size() : 0);
-    if (!box_.shear) return;
-    parallel_for(network_.size(), [&](std::int64_t edge) {
-      const auto k = static_cast<std::size_t>(edge);
-      const Vec<D> d = positions_[static_cast<std::size_t>(network_.i[k])] -
-                       positions_[static_cast<std::size_t>(network_.j[k])];
-      network_.slip_0[k] = Vec<D>{};
-      network_.slip_0[k][box_.shear->flow] = -box_.images_up(d) * box_.sliding;
-    });
   }
 
   const kernels::EdgeKernels& kernel_;

@@ -23,7 +23,6 @@ void PairNetwork<D>::resize(std::int64_t edges) {
   resize_one(r);
   resize_one(f_c);
   resize_one(zeta_par);
-  if (!slip_0.empty()) resize_one(slip_0);
   for (Column* column : {&u, &k_c, &zeta_perp, &kT}) column->resize(n);
 }
 

@@ -278,6 +278,11 @@ void read_shear(const Config& config, SceneSettings<D>& scene) {
         "rate",
         "a rigid [[body]] across sliding images is not part of this version: shear it between "
         "walls that move, or use a [[molecule]] held together by bonds");
+  if (scene.largest_force() > 0.0)
+    config.table("body_force")
+        .fail("force",
+              "a force adds to the flow that [shear] imposes and, where it varies, differs between "
+              "sliding images: leave one of the two out");
   if (shear.frequency > 0.0 && scene.mass > 0.0)
     entry.fail("frequency",
                "with mass an oscillation spreads from the sliding faces instead of being uniform: "
@@ -414,8 +419,8 @@ SceneSettings<D> read_scene_settings(const Config& config) {
   }
   read_molecules(config, scene);
   read_fluid(config, scene);
-  read_shear(config, scene);
   read_drive(config, scene);
+  read_shear(config, scene);
   read_drag(config.table("fluid"), scene);
   return scene;
 }

@@ -74,6 +74,20 @@ expect_error 1 run box --set integrator.lambda=0.5 -- integrator.lambda
 # monte-carlo takes a case as it was written for another scheme.
 expect_exit 0 run box --set integrator.lambda=0.5 --set integrator.order=2 --set integrator.name=monte-carlo --out sampled
 expect_error 1 run channel --set fluid.zeta_0=0.1 --set 'wall.0.velocity=[1.0, 0.0]' -- fluid.zeta_0 zeta_0_under_flow rattler_friction
+# Shear.
+sheared=(--set shear.rate=1.0)
+expect_exit 0 run box "${sheared[@]}" --set run.duration=0.02 --out sheared
+expect_error 1 run box --set shear.flow=x -- shear.rate
+expect_error 1 run box "${sheared[@]}" --set shear.flow=z -- '--set shear.flow' x y
+expect_error 1 run box "${sheared[@]}" --set shear.flow=y -- shear.gradient 'another direction'
+expect_error 1 run box "${sheared[@]}" --set shear.frequency=-1.0 -- shear.frequency
+expect_error 1 run box "${sheared[@]}" --set shear.frequency=1.0 --set fluid.mass=1.0 -- shear.frequency 'fluid.mass = 0.0'
+expect_error 1 run box "${sheared[@]}" --set shear.gama=1.0 -- shear.gama
+expect_error 1 run box "${sheared[@]}" --set fluid.zeta_0=0.1 --set fluid.zeta_0_under_flow=true -- fluid.zeta_0 rattler_friction
+expect_error 1 run box "${sheared[@]}" --set integrator.name=monte-carlo -- '--set integrator.name' shear trapezoidal
+expect_error 1 run box "${sheared[@]}" --set body_force.force='[1.0, 0.0]' --set body_force.wave=1 -- body_force shear
+expect_error 1 run box "${sheared[@]}" --set 'observe=[{kind="msd", directions=["x"]}]' -- directions flow
+expect_error 1 run channel "${sheared[@]}" -- shear.gradient bounded velocity
 # Physical inputs: both sets at once, and what the formulas cannot give.
 physical=(--set fluid.eta=3.0)
 expect_error 1 run box "${physical[@]}" -- "box/case.toml:$(line_of box 'gamma = 4.5')" fluid.gamma eta

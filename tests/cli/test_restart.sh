@@ -387,4 +387,48 @@ expect_exit 0 run joined --restart joined_part/checkpoint.h5
 same_run joined_whole joined_part
 printf 'i,j,r_0\n0,1,0.5\n1,18,0.7\n' >joined/bonds.csv
 expect_error 1 run joined --restart joined_part/checkpoint.h5 -- 'other bonds'
+
+# --- sheared: the images slide by the time alone, so a run continues amidst it; without a rate it is the periodic box ---
+for scheme in trapezoidal midpoint extrapolated implicit euler mass:trapezoidal mass:extrapolated mass:setd \
+  mass:velocity-verlet mass:shardlow; do
+  settings=(--set "integrator.name=${scheme#mass:}" --set shear.rate=30.0 --set solver.preconditioner=multilevel)
+  [[ $scheme == mass:* ]] && settings+=(--set fluid.mass=0.2)
+  [[ $scheme == trapezoidal ]] && settings+=(--set shear.frequency=40.0)
+  [[ $scheme == mass:setd ]] && settings+=(--set integrator.order=2)
+  name=sheared-${scheme/:/_}
+  expect_exit 0 run many --threads 1 "${settings[@]}" --out "$name"
+  expect_exit 0 run many --threads 2 "${settings[@]}" --set run.duration=0.055 --out "$name-parts"
+  expect_exit 0 run many --threads 1 "${settings[@]}" --restart "$name-parts/checkpoint.h5"
+  same_run "$name" "$name-parts"
+done
+still=(--set output.checkpoint_every=5)
+expect_exit 0 run many --threads 1 "${still[@]}" --out unsheared
+expect_exit 0 run many --threads 1 "${still[@]}" --set shear.rate=0.0 --out still
+if have_h5py; then
+  expect "$python" -c "
+import glob, h5py, numpy as np
+def last(run):
+    with h5py.File(sorted(glob.glob(run + '/trajectory.*.h5'))[-1]) as f:
+        p = f['particles/all']
+        return [p[name + '/value'][()] for name in ('position', 'velocity', 'image')], p['box/edges/value'][-1], p['position/time'][-1]
+(a, _, _), (b, edges, _) = last('unsheared'), last('still')
+assert all(x.tobytes() == y.tobytes() for x, y in zip(a, b))
+assert (edges == np.diag([12.0, 12.0])).all(), edges
+_, edges, time = last('sheared-midpoint')
+assert abs(edges[1, 0] - np.remainder(30.0 * 12.0 * time + 6.0, 12.0) + 6.0) < 1e-9, edges
+assert edges[0, 1] == 0.0 and time > 0.0
+"
+fi
+# Its last frame starts a run with the images where they were, and no other.
+frames=$(find sheared-midpoint -name 'trajectory.*.h5' | sort | tail -n 1)
+cp -r many again
+sed -i '/^density/d' again/case.toml
+again() { run again --threads 1 --set start.from=file --set "start.file=\"../$1\"" "${@:2}"; }
+expect_exit 0 again "$frames" --set shear.rate=30.0 --set run.duration=0.05 --out again_part
+expect_exit 0 again "$frames" --set shear.rate=30.0 --out again_whole
+expect_exit 0 again "$frames" --set shear.rate=30.0 --restart again_part/checkpoint.h5
+same_run again_whole again_part
+expect_error 1 again "$frames" --out unsheared_again -- "$frames" tilted '[shear]'
+still=$(find still -name 'trajectory.*.h5' | sort | tail -n 1)
+expect_error 1 again "$still" --set shear.rate=30.0 --restart again_part/checkpoint.h5 -- start.file offset
 finish

@@ -196,8 +196,23 @@ with h5py.File(sys.argv[1] + '/none.h5', 'w') as f:
   const auto failure = [&](const std::string& name) {
     return message_of<IoError>([&] { read_h5md(directory / name); });
   };
-  EXPECT_NE(failure("tilted.h5").find("tilted"), std::string::npos);
+  const Frame tilted = read_h5md(directory / "tilted.h5");
+  EXPECT_EQ(tilted.box_size, (std::vector<double>{5, 5}));
+  EXPECT_EQ(tilted.edges, (std::vector<double>{5, 0, 1, 5}));
+  EXPECT_TRUE(fixed.edges.empty()) << "a diagonal matrix is no tilt";
   EXPECT_NE(failure("none.h5").find("no frame"), std::string::npos);
+}
+
+TEST(Trajectory, TiltedEdgesComeBackFrameByFrame) {
+  const TemporaryDirectory directory;
+  TrajectorySegments segments(directory.path(), "", "1", "t");
+  Frame frame = sample_frame(3, 4, 7);
+  frame.edges = {10.0, 0.0, 0.0, 2.5, 11.0, 0.0, 0.0, 0.0, 12.0};
+  segments.append(frame);
+  frame.edges[3] = -1.5;
+  segments.append(frame);
+  segments.close_segment();
+  EXPECT_EQ(read_h5md(directory / "trajectory.0000.h5").edges, frame.edges);
 }
 
 TEST(Trajectory, RefusesFilesWithoutPositions) {

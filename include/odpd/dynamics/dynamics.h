@@ -136,7 +136,9 @@ class Dynamics {
 
  private:
   void wrap_sheared(Stage<D>& stage) const;
-  void refer_slips_to_start(Stage<D>& stage) const;
+  void write_slips(Stage<D>& stage) const;
+  Unknowns without_sliding_springs(const Stage<D>& stage, const StepWeights& weights,
+                                   Unknowns load);
   void add_mean_flow(const Stage<D>& stage, Unknowns& q);
   void check_paths(const std::vector<Vec<D>>& velocity, double dt) const;
   std::vector<Vec<D>> arms_at(std::span<const Vec<D>> positions);
@@ -158,8 +160,7 @@ class Dynamics {
   PairList<D> list_;
   std::unique_ptr<DofMap<D>> dofs_;
   RigidResistance<D> resistance_;
-  std::vector<Vec<D>>
-      faces_crossed_;  // with shear: velocity that each particle lost in the last `move`
+  std::vector<Vec<D>> faces_crossed_;  // with shear: velocity that each particle lost in `move`
   PhaseSeconds phases_;
   SolverStatistics statistics_;
 };

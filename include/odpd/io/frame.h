@@ -13,6 +13,7 @@ struct Frame {
   std::int64_t step = 0;
   double time = 0.0;
   std::vector<double> box_size;  ///< dimension edge lengths
+  std::vector<double> edges;     ///< edge vectors of a tilted cell, one after the other; else empty
   std::vector<bool> periodic;    ///< dimension flags
   std::vector<std::int64_t> id;
   std::vector<std::int64_t> species;  ///< index into species_names

@@ -44,7 +44,7 @@ void add_known_friction(const PairNetwork<D>& network, std::span<const std::int3
                         std::span<const Vec<D>> velocity, std::vector<Vec<D>>& force);
 
 /// force[p] -= (K v)_p with K = sum over edges of max(k_c, 0) e e^T, the linearised conservative force along the line of
-/// centres.
+/// centres. With that of slip_0.
 template <int D>
 void add_spring_forces(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
                        std::vector<Vec<D>>& force);

@@ -35,7 +35,8 @@ struct PairNetwork {
   std::vector<double> f_c, zeta_par;
   Column u, k_c, zeta_perp, kT;
   bool transverse = false;  ///< some zeta_perp is not zero
-  /// Relative velocity of the images that interact: the sliding ones of Lees-Edwards (length/time). Empty without shear.
+  /// Relative velocity of the images that interact: the sliding ones of Lees-Edwards (length/time). Empty without shear;
+  /// written by Dynamics::evaluate for all edges, bonds too.
   std::vector<Vec<D>> slip_0;
 
   // The edges of each particle, in fixed order: edge[start[p]] .. edge[start[p+1]-1].
