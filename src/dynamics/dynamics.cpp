@@ -310,14 +310,13 @@ auto Dynamics<D>::end_velocity(const Stage<D>& stage) -> Unknowns {
 }
 
 template <int D>
-void Dynamics<D>::set_end_velocity(const Stage<D>& stage, const Unknowns& q) {
+void Dynamics<D>::set_end_momentum(const Unknowns& p) {
   const std::vector<Vec<D>> known = particles_.end_velocity;
-  if (dofs().bodies() == 0) return dofs().scatter({}, q, known, particles_.end_velocity);
-  // The angular momentum goes on, with the moments of inertia of where the bodies are now.
-  Unknowns now = times_inertia(stage, q, 1.0);
+  if (dofs().bodies() == 0) return dofs().scatter({}, p, known, particles_.end_velocity);
+  Unknowns q = p;
   const std::vector<Vec<D>> arms = arms_at(particles_.position);
-  dofs().divide_by_inertia(arms, now);
-  dofs().scatter(arms, now, known, particles_.end_velocity);
+  dofs().divide_by_inertia(arms, q);
+  dofs().scatter(arms, q, known, particles_.end_velocity);
 }
 
 template <int D>

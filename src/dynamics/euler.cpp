@@ -12,7 +12,7 @@ const StepRecord<D>& Euler<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   for (std::size_t k = 0; k < load.size(); ++k) load[k] += force[k];
   std::vector<double> q(load.size(), 0.0);
   dynamics.solve(record.start, load, {}, q);
-  this->finish(dynamics, clock, q);
+  this->finish(dynamics, clock, q, q);
   return record;
 }
 

@@ -29,7 +29,8 @@ const StepRecord<D>& Extrapolated<D>::step(Dynamics<D>& dynamics, const Clock& c
   dynamics.solve(record.start, load, {inertia, stiffness_time, stiffness_time}, q);
 
   const std::vector<double> drag = dynamics.friction(record.start, q);
-  this->finish(dynamics, clock, q);
+  this->finish(dynamics, clock, q,
+               dynamics.has_mass() ? dynamics.times_inertia(record.start, q, 1.0) : q);
   std::vector<double> rest = force;
   for (std::size_t k = 0; k < q.size(); ++k) rest[k] -= drag[k];
   last_force_ = by_identity(dynamics, rest);

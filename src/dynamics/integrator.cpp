@@ -51,14 +51,16 @@ void Integrator<D>::begin(Dynamics<D>& dynamics, const Clock& clock) {
 }
 
 template <int D>
-void Integrator<D>::finish(Dynamics<D>& dynamics, const Clock& clock, const Unknowns& q_mid) {
+void Integrator<D>::finish(Dynamics<D>& dynamics, const Clock& clock, const Unknowns& q_mid,
+                           const Unknowns& p_mid) {
   record_.v_mid = dynamics.velocities(record_.start, q_mid);
   record_.alarm_crossings += dynamics.move(record_.v_mid, clock.dt, clock.time());
   if (!dynamics.has_mass()) return;
-  Unknowns q = dynamics.end_velocity(record_.start);
-  for (std::size_t k = 0; k < q.size(); ++k) q[k] = 2.0 * q_mid[k] - q[k];
-  dynamics.cross_faces(q);
-  dynamics.set_end_velocity(record_.start, q);
+  // What goes on is momentum, linear and angular: in 3D moments of inertia turn with the body.
+  Unknowns p = dynamics.times_inertia(record_.start, dynamics.end_velocity(record_.start), 1.0);
+  for (std::size_t k = 0; k < p.size(); ++k) p[k] = 2.0 * p_mid[k] - p[k];
+  dynamics.cross_faces(p);
+  dynamics.set_end_momentum(p);
 }
 
 namespace {

@@ -103,7 +103,7 @@ const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
     last_force_ = by_identity(dynamics, force);
   }
   dynamics.cross_faces(v);
-  dynamics.set_end_velocity(record.start, v);
+  dynamics.set_end_momentum(v);
   return record;
 }
 

@@ -144,7 +144,7 @@ const StepRecord<D>& Shardlow<D>::step(Dynamics<D>& dynamics, const Clock& clock
   std::vector<double> q;
   dynamics.dofs().gather({}, velocity, q);
   dynamics.cross_faces(q);
-  dynamics.set_end_velocity(record.start, q);
+  dynamics.set_end_momentum(q);
   return record;
 }
 

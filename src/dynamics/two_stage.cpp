@@ -31,6 +31,8 @@ const StepRecord<D>& TwoStage<D>::step(Dynamics<D>& dynamics, const Clock& clock
   for (std::size_t k = 0; k < load.size(); ++k) load[k] += impulse[k];
   dynamics.solve(record.start, load, weights, q);
   std::vector<double> q_mid = q;
+  std::vector<double> p_mid;
+  if (dynamics.has_mass()) p_mid = dynamics.times_inertia(record.start, q, start_weight_);
 
   const double ahead = reach_ * clock.dt;
   const std::vector<Vec<D>> predicted =
@@ -45,7 +47,11 @@ const StepRecord<D>& TwoStage<D>::step(Dynamics<D>& dynamics, const Clock& clock
 
   for (std::size_t k = 0; k < q.size(); ++k)
     q_mid[k] = start_weight_ * q_mid[k] + (1.0 - start_weight_) * q[k];
-  this->finish(dynamics, clock, q_mid);
+  if (dynamics.has_mass()) {
+    const auto rest = dynamics.times_inertia(record.corrector, q, 1.0 - start_weight_);
+    for (std::size_t k = 0; k < q.size(); ++k) p_mid[k] += rest[k];
+  }
+  this->finish(dynamics, clock, q_mid, p_mid);
   return record;
 }
 

@@ -31,7 +31,7 @@ const StepRecord<D>& VelocityVerlet<D>::step(Dynamics<D>& dynamics, const Clock&
   dynamics.cross_faces(half_way);
   dynamics.cross_faces(predicted);
   half_way_ = by_identity(dynamics, half_way);
-  dynamics.set_end_velocity(record.start, predicted);
+  dynamics.set_end_momentum(predicted);
   return record;
 }
 

@@ -277,7 +277,7 @@ TEST(Msd, ADamagedCheckpointIsRefused) {
     support::MemoryArchive broken = archive;
     damage(broken);
     support::expect_error<odpd::IoError>([&] { make().load(broken); },
-                                         {"displacements", "damaged"});
+                                         {"across", "damaged"});
   };
   EXPECT_NO_THROW(make().load(archive));
   refused([](auto& a) { a.integers["lag"].clear(); });

@@ -14,10 +14,10 @@ namespace {
 
 template <int D>
 struct Swarm {
-  // Fluid on a lattice 0.6 apart with two bodies in it, in a periodic box.
+  // Fluid on a lattice 0.7 apart with two bodies in it, in a periodic box.
   Swarm(const DpdParameters& fluid, double mass, int side, double tolerance = 1e-12)
       : model(1, {fluid}) {
-    box.size = support::uniform_vec<D>(0.6 * side);
+    box.size = support::uniform_vec<D>(0.7 * side);
     box.periodic.fill(true);
     for (const double where : {0.25, 0.7}) {
       RigidBody<D> body;
@@ -38,7 +38,7 @@ struct Swarm {
     for (std::int64_t n = 0; n < sites; ++n) {
       Vec<D> r = 0.1 * shake[static_cast<std::size_t>(n)];
       std::int64_t rest = n;
-      for (int c = 0; c < D; ++c, rest /= side) r[c] += 0.6 * static_cast<double>(rest % side);
+      for (int c = 0; c < D; ++c, rest /= side) r[c] += 0.7 * static_cast<double>(rest % side);
       box.wrap(r);
       particles.add(r, 0, 0);
     }
@@ -86,15 +86,17 @@ TYPED_TEST_SUITE(MovingBodies, support::Dimensions);
 // Without noise the distance to a run of half the step falls by 4 for second order, 2 for first.
 TYPED_TEST(MovingBodies, KeepTheOrderOfTheStep) {
   constexpr int D = TypeParam::D;
-  const DpdParameters calm{.a = 18.5, .gamma = 4.5, .kT = 0.0};
+  // Smooth weights: with the usual ones a pair that crosses the cutoff costs some of the order.
+  const DpdParameters calm{
+      .a = 18.5, .s_bar = 3.0, .gamma = 4.5, .s = 2.0, .cutoff = 1.5, .kT = 0.0};
   for (const auto& [scheme, mass, order] : {std::tuple{"trapezoidal", 0.0, 2.0},
                                             {"trapezoidal", 0.5, 2.0},
                                             {"midpoint", 0.0, 2.0},
                                             {"extrapolated", 0.0, 2.0},
                                             {"euler", 0.0, 1.0}}) {
     std::vector<std::unique_ptr<Swarm<D>>> runs;
-    for (const std::int64_t steps : {40, 80, 160}) {
-      runs.push_back(std::make_unique<Swarm<D>>(calm, mass, D == 2 ? 6 : 4));
+    for (const std::int64_t steps : {10, 20, 40}) {
+      runs.push_back(std::make_unique<Swarm<D>>(calm, mass, D == 2 ? 6 : 5));
       runs.back()->run(scheme, 0.1 / static_cast<double>(steps), steps);
     }
     const double coarse = runs[0]->distance(*runs[1]), fine = runs[1]->distance(*runs[2]);

@@ -81,15 +81,15 @@ double mean_over_directions(const std::string& scheme, int copies, std::int64_t 
       particles.add(r, 0, 1);
     };
     frozen({1.15, 0.1, -0.1});  // strong friction where the pull leads
-    for (int n = 0; n < 6; ++n) {
-      const double angle = n * std::numbers::pi / 3.0;
-      frozen({2.4 * std::cos(angle), 2.4 * std::sin(angle), 0.4 * (n % 2)});
+    for (int n = 0; n < 8; ++n) {
+      const double angle = n * std::numbers::pi / 4.0;
+      frozen({2.2 * std::cos(angle), 2.2 * std::sin(angle), 0.4 * (n % 2)});
     }
     if (D > 2)
       for (const double z : {-2.2, 2.2}) frozen({0.2, -0.3, z});
   }
   particles.walls = 1;
-  const DpdModel<D> model(1, {DpdParameters{.a = 0.0, .gamma = 4.5, .s = 0.5, .cutoff = 2.9}});
+  const DpdModel<D> model(1, {DpdParameters{.a = 0.0, .gamma = 9.0, .s = 2.0, .cutoff = 2.0}});
   const PulledTraps<D> traps(size);
   DynamicsSettings settings;
   settings.reorder_every = 0;

@@ -106,8 +106,8 @@ class Dynamics {
   bool has_mass() const { return settings_.mass > 0.0; }
   /// The unknowns of the particles' end velocities (zeros without mass), at the stage of a step's start.
   Unknowns end_velocity(const Stage<D>& stage);
-  /// The same from unknowns q at that stage, for the particles where they are now: bodies keep their angular momentum.
-  void set_end_velocity(const Stage<D>& stage, const Unknowns& q);
+  /// Sets them from momenta per mass p = P^T P q, with the moments of inertia of where the bodies are now.
+  void set_end_momentum(const Unknowns& p);
   /// inertia P^T P q: momenta, with a mass, or a drag, of `inertia` on every particle that moves.
   Unknowns times_inertia(const Stage<D>& stage, const Unknowns& q, double inertia);
   /// P q + the stage's known velocities.

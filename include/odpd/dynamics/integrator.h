@@ -54,8 +54,10 @@ class Integrator {
 
   /// What every step begins with: memory in order, edges and forces at r, the velocity there.
   void begin(Dynamics<D>& dynamics, const Clock& clock);
-  /// What steps with implicit friction end with: r' = r + dt P q_mid, and with mass v' = 2 q_mid - v.
-  void finish(Dynamics<D>& dynamics, const Clock& clock, const Unknowns& q_mid);
+  /// What steps with implicit friction end with: r' = r + dt P q_mid, and with mass p' = 2 p_mid - p, p = P^T P q the
+  /// momentum per mass, p_mid the mean over the stages.
+  void finish(Dynamics<D>& dynamics, const Clock& clock, const Unknowns& q_mid,
+              const Unknowns& p_mid);
 
   StepRecord<D> record_;
 };

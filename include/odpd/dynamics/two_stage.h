@@ -3,6 +3,7 @@
 //
 //   (M + R(r )) q1 = M q + F(r , t       ) + xi,    r* = r + c dt P q1
 //   (M + R(r*)) q2 = M q + F(r*, t + c dt) + xi,    q_mid = b q1 + (1 - b) q2,   r' = r + dt P q_mid,   q' = 2 q_mid - q
+// (bodies in 3D: the same of the momenta P^T P q, as moments of inertia turn with the body)
 //
 // c = 1, b = 1/2: the stochastic trapezoidal rule. c = 1/2, b = 0: Fixman's midpoint rule. Both get the drift from the same
 // stored vector xi in both stages.
