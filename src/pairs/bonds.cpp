@@ -148,9 +148,6 @@ void BondedModel<D>::write_bond(const Bond& bond, double half_box, const Box<D>&
   network.zeta_par[k] = 0.0;
   network.zeta_perp.set(k, 0.0);
   network.kT.set(k, t.kT);
-  if (network.slip_0.empty()) return;
-  network.slip_0[k] = Vec<D>{};
-  network.slip_0[k][box.shear->flow] = -box.images_up(positions[i] - positions[j]) * box.sliding;
 }
 
 template <int D>

@@ -85,7 +85,8 @@ expect_error 1 run box "${sheared[@]}" --set shear.frequency=1.0 --set fluid.mas
 expect_error 1 run box "${sheared[@]}" --set shear.gama=1.0 -- shear.gama
 expect_error 1 run box "${sheared[@]}" --set fluid.zeta_0=0.1 --set fluid.zeta_0_under_flow=true -- fluid.zeta_0 rattler_friction
 expect_error 1 run box "${sheared[@]}" --set integrator.name=monte-carlo -- '--set integrator.name' shear trapezoidal
-expect_error 1 run box "${sheared[@]}" --set body_force.force='[1.0, 0.0]' --set body_force.wave=1 -- body_force shear
+expect_error 1 run box "${sheared[@]}" --set 'body_force.force=[1.0, 0.0]' \
+  --set 'body_force.wave={ along = "y", number = 1 }' -- body_force.force '[shear]'
 expect_error 1 run box "${sheared[@]}" --set 'observe=[{kind="msd", directions=["x"]}]' -- directions flow
 expect_error 1 run channel "${sheared[@]}" -- shear.gradient bounded velocity
 # Physical inputs: both sets at once, and what the formulas cannot give.
