@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -293,16 +294,18 @@ void read_start_file(SceneSettings<D>& scene) {
 
 std::string portable_case(const Config& config) {
   std::vector<std::string> absolute;
-  for (const char* table : {"start", "bonds"}) {
+  constexpr std::array<std::pair<const char*, const char*>, 3> files{
+      {{"start", "file"}, {"bonds", "file"}, {"fluid", "calibration"}}};
+  for (const auto& [table, key] : files) {
     const Config entry = config.table(table);
-    if (!entry.has("file")) continue;
-    const std::filesystem::path file = config.directory() / entry.text("file");
+    if (!entry.has(key) || entry.text(key).empty()) continue;
+    const std::filesystem::path file = config.directory() / entry.text(key);
     std::string quoted;
     for (const char letter : std::filesystem::absolute(file).lexically_normal().string()) {
       if (letter == '"' || letter == '\\') quoted += '\\';
       quoted += letter;
     }
-    absolute.push_back(fmt::format("{}.file=\"{}\"", table, quoted));
+    absolute.push_back(fmt::format("{}.{}=\"{}\"", table, key, quoted));
   }
   if (absolute.empty()) return config.resolved();
   return Config::from_text(config.resolved(), "case.toml", absolute).resolved();
@@ -314,7 +317,8 @@ std::vector<std::pair<std::string, std::string>> fixed_values(const Config& conf
     const std::string& path = value.first;
     const auto in = [&](std::string_view table) { return path.rfind(table, 0) == 0; };
     if (path == "title" || path == "run.duration" || path == "run.blow_up" ||
-        path == "start.file" || path == "bonds.file" || path == "check")
+        path == "start.file" || path == "bonds.file" || path == "fluid.calibration" ||
+        path == "check")
       continue;
     if (in("run.until.")) continue;
     // Holding the centre of mass is another problem, not another solver.

@@ -172,6 +172,10 @@ std::string fluid_text(const Scene<D>& scene, const Results& results) {
   out += line("DPD parameters", dpd_values(settings.fluid));
   if (settings.physical_inputs.any())
     out += line("asked for", asked_values(settings.physical_inputs));
+  if (const auto& c = settings.calibration)
+    out += fmt::format("  {:<15} gamma = {}, measured to give eta = {} ({})\n", "calibrated",
+                       with_error(c->fluid.gamma, c->gamma_error), with_error(c->eta, c->eta_error),
+                       c->file);
   out += line("kinetic theory", kinetic_values(k));
   const Scalar* measured = measured_viscosity(results);
   out += fmt::format(
@@ -192,6 +196,13 @@ JsonObject fluid_json(const Scene<D>& scene, const Results& results) {
   json.set("state", json_of(state_values(scene)));
   json.set("dpd", json_of(dpd_values(settings.fluid)));
   json.set("asked_for", json_of(asked_values(settings.physical_inputs)));
+  if (const auto& c = settings.calibration)
+    json.set("calibration", JsonObject()
+                                .set("file", c->file)
+                                .set("gamma", c->fluid.gamma)
+                                .set("gamma_stderr", c->gamma_error)
+                                .set("eta", c->eta)
+                                .set("eta_stderr", c->eta_error));
   json.set("kinetic_theory", json_of(kinetic_values(k)));
   json.set("groups", json_of(group_values(scene, k, results)));
   const Scalar* measured = measured_viscosity(results);

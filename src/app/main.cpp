@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "odpd/app/calibrate.h"
 #include "odpd/app/compare.h"
 #include "odpd/app/info.h"
 #include "odpd/app/interrupt.h"
@@ -20,7 +21,8 @@
 namespace {
 
 constexpr const char* exit_codes =
-    "Exit codes: 0 ok, 1 case or usage, 2 solver or physics, 3 files, 4 a check failed, 130 "
+    "Exit codes: 0 ok, 1 case or usage, 2 solver or physics, 3 files, 4 a check failed or an error "
+    "was not reached, 130 "
     "interrupted.\n"
     "Start with: odpd run cases/01_couette      Every key of a case file: docs/case-file.md";
 
@@ -45,8 +47,10 @@ std::string usage_error(const CLI::App& app, const std::string& reason) {
   const std::vector<std::string> words = app.remaining();
   const auto word =
       std::find_if(words.begin(), words.end(), [](const auto& w) { return w.rfind('-', 0) != 0; });
-  if (word == words.end()) return "a command is needed: run, compare, study, info; see odpd --help";
-  return "there is no command '" + *word + "', only run, compare, study, info; see odpd --help";
+  if (word == words.end())
+    return "a command is needed: run, compare, study, calibrate, info; see odpd --help";
+  return "there is no command '" + *word +
+         "', only run, compare, study, calibrate, info; see odpd --help";
 }
 
 CLI::App* add_run(CLI::App& app, odpd::RunOptions& run, bool& quiet) {
@@ -120,6 +124,44 @@ CLI::App* add_study(CLI::App& app, odpd::StudyOptions& study, bool& quiet) {
   return command;
 }
 
+CLI::App* add_calibrate(CLI::App& app, odpd::CalibrateOptions& calibrate, bool& quiet) {
+  CLI::App* command = app.add_subcommand(
+      "calibrate", "measure viscosities of a case's fluid and find the friction that gives one");
+  add_case(*command, calibrate.case_path, calibrate.overrides, quiet);
+  const CLI::Validator positive = CLI::Range(1e-300, 1e300);
+  CLI::Option* eta =
+      command->add_option("--eta", calibrate.eta, "viscosity wanted [fluid.eta of the case]")
+          ->check(positive);
+  command
+      ->add_option("--relative-error", calibrate.relative_error,
+                   "standard error of the viscosity, over it")
+      ->check(CLI::Range(1e-4, 0.2))
+      ->capture_default_str();
+  command
+      ->add_option("--shear-rate", calibrate.shear_rate,
+                   "of the measurements [9 kT/(gamma r_c^2), less with mass]")
+      ->check(positive);
+  command
+      ->add_option("--particles", calibrate.particles,
+                   "in the measuring scene [a cube with an edge of 8 (2D), 6 (3D) cutoffs]")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{100000000}));
+  command
+      ->add_flag("--measure-only", calibrate.measure_only,
+                 "one measurement, at the friction of the case")
+      ->excludes(eta);
+  command->add_option(
+      "--out", calibrate.out,
+      "output directory [runs/<case>-calibrate]; measurements of the same that are there count");
+  command->add_option("--threads", calibrate.threads, "threads; never changes results")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  command
+      ->add_option("--limit-seconds", calibrate.limit_seconds,
+                   "end, with exit code 4, after so long; the same command goes on")
+      ->check(positive);
+  return command;
+}
+
 int command_line(int argc, char** argv) {
   CLI::App app{"odpd: creeping flow of dissipative-particle fluids"};
   app.set_version_flag("--version", "odpd " ODPD_VERSION);
@@ -135,6 +177,8 @@ int command_line(int argc, char** argv) {
   const CLI::App* compare_command = add_compare(app, compare, stopping, quiet);
   odpd::StudyOptions study;
   const CLI::App* study_command = add_study(app, study, quiet);
+  odpd::CalibrateOptions calibrate;
+  const CLI::App* calibrate_command = add_calibrate(app, calibrate, quiet);
   CLI::App* info_command =
       app.add_subcommand("info", "version, build options, backends and machine");
 
@@ -148,6 +192,7 @@ int command_line(int argc, char** argv) {
   odpd::let_large_writes_fail();
   if (run_command->parsed()) return odpd::run_case(run);
   if (study_command->parsed()) return odpd::run_study(study);
+  if (calibrate_command->parsed()) return odpd::calibrate(calibrate);
   compare.increment_rule = stopping == "increment";
   if (compare_command->parsed()) return odpd::compare_solvers(compare);
   if (info_command->parsed()) std::fputs(odpd::info_text().c_str(), stdout);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "odpd/app/calibration_file.h"
 #include "odpd/core/error.h"
 #include "odpd/core/isa.h"
 #include "odpd/core/log.h"
@@ -18,7 +19,7 @@ namespace {
 
 template <int D>
 SceneSettings<D> scene_of(const Config& config) {
-  SceneSettings<D> scene = read_scene_settings<D>(config);
+  SceneSettings<D> scene = read_scene_settings<D>(config, read_calibration(config));
   read_start_file(scene);
   return scene;
 }
@@ -284,6 +285,8 @@ void Simulation<D>::save(CheckpointWriter& out) const {
     run.write("shear_start", std::vector<double>{shear->start});
   run.write_text("instructions", std::string(isa_name(isa())));
   if (!scene_.bonds().empty()) run.write("bonds", bond_ends(scene_.bonds()));
+  if (const auto& calibration = scene_.settings().calibration)
+    run.write("calibrated_gamma", std::vector<double>{calibration->fluid.gamma});
   dynamics_.solver().save(out.component("solver"));
   scene_.particles().save(out.component("particles"));
   integrator_->save(out.component("integrator"));
@@ -312,6 +315,13 @@ void Simulation<D>::load(CheckpointReader& in) {
         fmt::format("the images of the checkpoint's run began with an offset of {}, those of "
                     "start.file with {}: start.file must be the one of that run",
                     run.read_doubles("shear_start").at(0), shear->start));
+  const auto& calibration = scene_.settings().calibration;
+  if (run.has("calibrated_gamma") != calibration.has_value() ||
+      (calibration &&
+       run.read_doubles("calibrated_gamma") != std::vector<double>{calibration->fluid.gamma}))
+    throw ConfigError(
+        "the checkpoint has another friction than the file of fluid.calibration gives now: "
+        "restore that file");
   const std::vector<std::int64_t> counts = run.read_integers("counts");
   clock_.step = counts.at(0);
   if (clock_.step > clock_.total_steps)

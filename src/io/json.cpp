@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -88,6 +89,14 @@ struct JsonDocument::Impl {
   const Value* find(const Path& path) const {
     const Value* here = &value;
     for (const std::string& key : path) {
+      if (here->is_array()) {
+        std::size_t index = 0;
+        const auto [end, status] = std::from_chars(key.data(), key.data() + key.size(), index);
+        if (status != std::errc{} || end != key.data() + key.size() || index >= here->size())
+          return nullptr;
+        here = &here->at(index);
+        continue;
+      }
       if (!here->is_object() || !here->contains(key)) return nullptr;
       here = &here->at(key);
     }
@@ -113,6 +122,11 @@ double JsonDocument::number(const Path& path) const {
 std::string JsonDocument::text(const Path& path) const {
   const Value* found = impl_->find(path);
   return found && found->is_string() ? found->get<std::string>() : "";
+}
+
+std::size_t JsonDocument::count(const Path& path) const {
+  const Value* found = impl_->find(path);
+  return found && found->is_array() ? found->size() : 0;
 }
 
 std::vector<std::string> JsonDocument::keys(const Path& path) const {

@@ -121,7 +121,8 @@ void read_pairs(const Config& config, SceneSettings<D>& scene) {
 
 // Needs the walls, as the volume between them turns a count into a density.
 template <int D>
-void read_fluid(const Config& config, SceneSettings<D>& scene) {
+void read_fluid(const Config& config, const std::optional<Calibration>& calibration,
+                SceneSettings<D>& scene) {
   const Config fluid = config.table("fluid");
   fluid.choice("model", {"dpd"}, "dpd");
   read_amount(fluid, scene);
@@ -140,6 +141,11 @@ void read_fluid(const Config& config, SceneSettings<D>& scene) {
       scene.physical_inputs.any()
           ? read_physical_fluid<D>(fluid, scene.physical_inputs, density, scene.mass)
           : read_pair(fluid, DpdParameters{}, true);
+  if (names_calibration(fluid)) {
+    base.gamma = calibrated_friction(fluid, calibration, scene.physical_inputs.eta,
+                                     {D, density, scene.mass, base});
+    scene.calibration = calibration;
+  }
   if (fluid.has("rattler_friction")) {
     const Config far = fluid.table("rattler_friction");
     base.gamma_far = far.positive("gamma");
@@ -403,7 +409,8 @@ double SceneSettings<D>::fluid_volume() const {
 }
 
 template <int D>
-SceneSettings<D> read_scene_settings(const Config& config) {
+SceneSettings<D> read_scene_settings(const Config& config,
+                                     const std::optional<Calibration>& calibration) {
   SceneSettings<D> scene;
   const std::int64_t seed = config.integer("seed", 1);
   if (seed < 0) config.fail("seed", "must be zero or positive");
@@ -418,7 +425,7 @@ SceneSettings<D> read_scene_settings(const Config& config) {
                                                 entry.text("species", scene.species[0].name));
   }
   read_molecules(config, scene);
-  read_fluid(config, scene);
+  read_fluid(config, calibration, scene);
   read_drive(config, scene);
   read_shear(config, scene);
   read_drag(config.table("fluid"), scene);
@@ -427,7 +434,7 @@ SceneSettings<D> read_scene_settings(const Config& config) {
 
 template struct SceneSettings<2>;
 template struct SceneSettings<3>;
-template SceneSettings<2> read_scene_settings<2>(const Config&);
-template SceneSettings<3> read_scene_settings<3>(const Config&);
+template SceneSettings<2> read_scene_settings<2>(const Config&, const std::optional<Calibration>&);
+template SceneSettings<3> read_scene_settings<3>(const Config&, const std::optional<Calibration>&);
 
 }  // namespace odpd

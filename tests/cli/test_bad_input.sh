@@ -29,7 +29,7 @@ expect test -z "$(grep -v '^step' "$err_text")"
 expect_exit 0 "$odpd" --quiet run box --out quiet
 expect test -z "$(grep info "$err_text")"
 expect_error 1 "$odpd" -- --help
-expect_error 1 "$odpd" simulate box -- simulate 'run, compare, study, info'
+expect_error 1 "$odpd" simulate box -- simulate 'run, compare, study, calibrate, info'
 expect_error 1 run -- case
 expect_error 1 run box --thread 2 -- --thread
 expect_error 1 run box --threads many -- --threads many

@@ -38,7 +38,8 @@ class JsonObject {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A JSON file to look things up in by path: {"observables", "pressure", "mean"}.
+/// A JSON file to look things up in by path: {"observables", "pressure", "mean"}; elements of an array by their index
+/// from 0: {"measurements", "1", "eta"}.
 class JsonDocument {
  public:
   /// Throws IoError naming the file when it cannot be read or is no JSON.
@@ -48,6 +49,7 @@ class JsonDocument {
   using Path = std::vector<std::string>;
   double number(const Path& path) const;                  ///< NaN when absent or not a number
   std::string text(const Path& path) const;               ///< "" when absent or not a string
+  std::size_t count(const Path& path) const;              ///< elements of the array there
   std::vector<std::string> keys(const Path& path) const;  ///< of the object there, in their order
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 // What a scene is made of, as plain values; `read_scene_settings` fills it from a case file.
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "odpd/geometry/box.h"
 #include "odpd/pairs/dpd.h"
 #include "odpd/scene/bodies.h"
+#include "odpd/scene/calibration.h"
 #include "odpd/scene/molecules.h"
 #include "odpd/scene/physical_inputs.h"
 
@@ -63,11 +65,12 @@ struct SceneSettings {
   std::vector<DpdParameters> pairs{DpdParameters{}};  ///< [A * species.size() + B]
   DpdParameters fluid;                                ///< of [fluid], before any [[pair]]
   PhysicalInputs physical_inputs;  ///< that [fluid] gives in place of DPD parameters; may be none
-  std::int64_t count = 0;          ///< fluid particles; 0: by density
-  double density = 4.0;            ///< fluid particles per volume between the walls
-  double start_density = 0.0;      ///< what the start file must hold, as `count` where > 0; 0: any
-  double mass = 0.0;               ///< of every fluid particle
-  double zeta_0 = 0.0;             ///< uniform drag on every fluid particle (mass/time)
+  std::optional<Calibration> calibration;  ///< where gamma comes from it
+  std::int64_t count = 0;                  ///< fluid particles; 0: by density
+  double density = 4.0;                    ///< fluid particles per volume between the walls
+  double start_density = 0.0;  ///< what the start file must hold, as `count` where > 0; 0: any
+  double mass = 0.0;           ///< of every fluid particle
+  double zeta_0 = 0.0;         ///< uniform drag on every fluid particle (mass/time)
   std::vector<WallSettings<D>> walls;
   std::vector<BodySettings<D>> bodies;
   std::vector<MoleculeSettings<D>> molecules;
@@ -107,8 +110,10 @@ struct SceneSettings {
 
 /// Reads [box], [fluid], [[species]], [[pair]], [[wall]], [[body]], [[molecule]], [bonds], [shear], [body_force], [start] and `seed`. Throws ConfigError for
 /// values out of range and for contradictions (both gamma and sigma, a wall in a periodic direction, ...).
+/// `calibration` is the contents of the file that fluid.calibration names, which io's caller reads.
 template <int D>
-SceneSettings<D> read_scene_settings(const Config& config);
+SceneSettings<D> read_scene_settings(const Config& config,
+                                     const std::optional<Calibration>& calibration = {});
 
 /// The part of it that [[molecule]] and [bonds] are.
 template <int D>
