@@ -5,7 +5,7 @@ csv = ARG1."/study.csv"
 set datafile separator ","
 rows(mass, observable) = sprintf("< grep '^m = %d,[0-9.]*,%s,' %s", mass, observable, csv)
 # The whole cell counts: F = n P h^2 and U = flux/(n h), with n of the fluid clear of the cylinder (README of 10_cylinder_array).
-N = 140; h = 6.0; eta = 2.62; n = 3.98; flux = N/(n*h*h)
+N = 140; h = 6.0; eta = 2.58; n = 3.97; flux = N/(n*h*h)
 k(a) = 4*pi/(log(h/(sqrt(pi)*a)) - 0.738 + pi*a*a/h**2)
 set multiplot layout 1,2
 set grid lc rgb "#dddddd"; set key bottom right
