@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "odpd/analysis/bodies.h"
 #include "odpd/analysis/density_residual.h"
@@ -101,6 +102,27 @@ typename Grid<D>::Counts read_cells(const Config& entry, const Scene<D>& scene) 
       entry.fail("bins", "counts must be whole and positive");
   }
   return bins;
+}
+
+template <int D>
+std::unique_ptr<Observer<D>> make_residual(const Config& entry, ObserverSettings settings,
+                                           const Scene<D>& scene) {
+  const auto cells = read_cells(entry, scene);
+  const double clear = entry.non_negative("clear_of_bodies", 0.0);
+  if (clear > 0.0) {
+    const auto& bodies = scene.settings().bodies;
+    if (bodies.empty()) entry.fail("clear_of_bodies", "the scene has no [[body]]");
+    for (const auto& body : bodies)
+      if (body.motion != BodyMotion::fixed)
+        entry.fail(
+            "clear_of_bodies",
+            fmt::format("cells are left out around fixed bodies only, and '{}' moves: give it "
+                        "motion = \"fixed\" or leave the key out",
+                        body.name));
+    if (DensityResidual<D>(settings, cells, scene, clear).cells() < 2)
+      entry.fail("clear_of_bodies", "leaves less than two cells: use a smaller one, or more bins");
+  }
+  return std::make_unique<DensityResidual<D>>(std::move(settings), cells, scene, clear);
 }
 
 template <int D>
@@ -258,6 +280,22 @@ std::int64_t default_every(const std::string& kind, const Clock& clock) {
   return 1;
 }
 
+// Steps of the measured part that an entry asks for by times.
+void read_time_window(const Config& entry, const Clock& clock, ObserverSettings& settings) {
+  if (entry.has("from")) settings.from = std::llround(entry.non_negative("from", 0.0) / clock.dt);
+  if (entry.has("until")) settings.until = std::llround(entry.positive("until") / clock.dt);
+  const std::int64_t last = std::min(settings.until, clock.total_steps - clock.equilibration_steps);
+  const std::int64_t every = settings.every;
+  if ((entry.has("from") || entry.has("until")) && last / every <= settings.from / every)
+    entry.fail(
+        entry.has("from") ? "from" : "until",
+        fmt::format(
+            "no step of the run is left to sample: after {} and up to {} of its {} "
+            "measured time units, every {} step(s)",
+            static_cast<double>(settings.from) * clock.dt, static_cast<double>(last) * clock.dt,
+            static_cast<double>(clock.total_steps - clock.equilibration_steps) * clock.dt, every));
+}
+
 template <int D>
 std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::string& kind,
                                            const Scene<D>& scene, const Clock& clock,
@@ -270,11 +308,10 @@ std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::strin
     entry.fail("name", "use letters, digits, _ and - (and not 'particles', which names a picture)");
   settings.every = entry.positive_integer("every", default_every(kind, clock));
   settings.series = entry.boolean("series", false);
+  read_time_window(entry, clock, settings);
   if (kind == "thermo") return std::make_unique<Thermo<D>>(std::move(settings), scene);
   if (kind == "profile") return make_profile(entry, std::move(settings), scene);
-  if (kind == "density-residual")
-    return std::make_unique<DensityResidual<D>>(std::move(settings), read_cells(entry, scene),
-                                                scene);
+  if (kind == "density-residual") return make_residual(entry, std::move(settings), scene);
   if (kind == "divergence") return make_divergence(entry, std::move(settings), scene);
   if (kind == "heat") return make_heat(entry, std::move(settings), scene);
   if (kind == "stress") return make_stress(entry, std::move(settings), scene);

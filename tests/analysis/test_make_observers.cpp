@@ -75,6 +75,23 @@ TEST_F(MakeObservers, TellWhenTheyAreDue) {
   }
 }
 
+TEST_F(MakeObservers, SampleATimeWindowOnly) {
+  odpd::Clock clock{.dt = 0.02, .step = 0, .equilibration_steps = 10, .total_steps = 100};
+  const auto made = [&](const std::string& keys) {
+    const Config config =
+        Config::from_text("[[observe]]\nkind = \"thermo\"\nevery = 4\n" + keys, "case.toml");
+    auto observers = odpd::make_observers(config, scene, clock);
+    config.reject_unread();
+    return observers;
+  };
+  const auto observers = made("from = 0.2\nuntil = 0.4\n");  // measured steps 11 to 20
+  for (clock.step = 0; clock.step < 50; ++clock.step)
+    EXPECT_EQ(observers[0]->is_due(clock), clock.step == 22 || clock.step == 26 || clock.step == 30)
+        << "step " << clock.step;
+  for (const char* keys : {"from = 1.8\n", "from = 0.4\nuntil = 0.4\n", "until = 0.06\n"})
+    expect_error<ConfigError>([&] { made(keys); }, {"no step of the run", "1.8"});
+}
+
 TEST_F(MakeObservers, RefuseWhatTheyDoNotKnow) {
   refuse("kind = \"viscosities\"\n", {"kind", "profile", "rdf", "viscosity"});
   refuse("name = \"x\"\n", {"kind"});
@@ -97,6 +114,7 @@ TEST_F(MakeObservers, RefuseWhatTheyDoNotKnow) {
   refuse("kind = \"divergence\"\nbins = [2.0, 5.0]\n", {"bins", "at least 3"});
   refuse("kind = \"density-residual\"\nbins = [5.0]\n", {"bins", "2 counts"});
   refuse("kind = \"density-residual\"\nbins = [5.0, 2.5]\n", {"bins", "whole"});
+  refuse("kind = \"density-residual\"\nclear_of_bodies = 1.0\n", {"clear_of_bodies", "[[body]]"});
 }
 
 TEST_F(MakeObservers, RefuseWhatTheSceneHasNot) {

@@ -306,6 +306,26 @@ TEST(DensityResidual, FourParticlesInFourBins) {
   EXPECT_NEAR(records::mean(results, "n.paper"), 0.25, 1e-14);
 }
 
+// A fixed body next to a corner of a 4 x 4 grid: the four cells around that corner, across the faces, are left out, and the two
+// particles in them with them. Counts 3 and eleven times 0: mean 1/4, squares 2.75^2 + 11/16 = 8.25.
+TEST(DensityResidual, CellsAroundABodyAreLeftOut) {
+  const std::vector<Vec<2>> r{{{1.2, 1.1}}, {{1.9, 1.5}}, {{1.5, 1.9}}, {{3.5, 3.5}}, {{0.5, 0.5}}};
+  auto s = records::periodic<2>(4.0, r);
+  odpd::BodySettings<2> body;
+  body.shape = {{{-0.05, 0.0}}, {{0.05, 0.0}}};
+  body.motion = odpd::BodyMotion::fixed;
+  body.positions = {{{0.1, 3.9}}};
+  s.bodies.push_back(body);
+  const Scene<2> scene(s);
+  DensityResidual<2> residual({.kind = "density-residual", .name = "n"}, {4, 4}, scene, 1.0);
+  EXPECT_EQ(residual.cells(), 12u);
+  StepRecord<2> record;
+  record.start.position = scene.particles().position;
+  residual.measure(Clock{}, scene.particles(), record);
+  EXPECT_NEAR(residual.series_row()[0], std::sqrt(8.25) / 12.0, 1e-14);
+  EXPECT_NEAR(residual.series_row()[1], std::sqrt(8.25 / 12.0), 1e-14);
+}
+
 // Independent positions in every sample: an even fluid shows its noise alone, and of an uneven one the unevenness is left. 25 bins:
 // the noise's own number scatters by 1/sqrt(2 * 24) = 14 %, and block errors are up to 20 % high.
 TEST(DensityResidual, NoiseIsToldFromUnevenness) {

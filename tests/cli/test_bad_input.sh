@@ -140,6 +140,10 @@ expect_error 1 run box --set fluid.mass=1.0 --set 'observe=[{kind="heat"}]' -- h
 expect_error 1 run box --set 'observe=[{kind="divergence", bins=[2.0, 4.0]}]' -- bins 3
 expect_error 1 run box --set 'shear={rate=1.0}' --set 'observe=[{kind="divergence", bins=[4.0, 4.0]}]' -- kind shear
 expect_error 1 run box --set 'observe=[{kind="profile", fit="sine"}]' -- fit body_force.wave
+expect_error 1 run box --set 'observe=[{kind="rdf", from=1e6}]' -- from 'no step of the run'
+expect_error 1 run box --set 'observe=[{kind="rdf", until=0.0}]' -- until positive
+expect_error 1 run box --set 'observe=[{kind="density-residual", clear_of_bodies=1.0}]' -- clear_of_bodies '[[body]]'
+expect_error 1 run box --set 'body=[{name="b", shape="square", side=0.1}]' --set 'observe=[{kind="density-residual", clear_of_bodies=1.0}]' -- clear_of_bodies "'b' moves"
 
 # --- contradictions in the scene ---
 expect_error 1 run box --set 'box.size=[1.5, 4.0]' -- cutoff 1.5

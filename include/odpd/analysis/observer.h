@@ -14,6 +14,7 @@
 //   heat              produced heat, power put in, change of energy
 //   msd               mean-square displacement and self-diffusion per species
 //   molecules         lengths of bonds, radius of gyration and diffusion of each kind of molecule
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ struct ObserverSettings {
   std::string name;        ///< prefix of its scalars and stem of its files
   std::int64_t every = 1;  ///< steps between samples
   bool series = false;     ///< write a time series
+  /// Measured steps that may be sampled: after `from` of them, up to `until`.
+  std::int64_t from = 0, until = std::numeric_limits<std::int64_t>::max();
 };
 
 template <int D>
@@ -43,7 +46,9 @@ class Observer {
   const ObserverSettings& settings() const { return settings_; }
 
   bool is_due(const Clock& clock) const {
-    return clock.measuring() && clock.measured_steps() % settings_.every == 0;
+    const std::int64_t step = clock.measured_steps();
+    return clock.measuring() && step % settings_.every == 0 && step > settings_.from &&
+           step <= settings_.until;
   }
   /// One sample from the step just done (clock.step already advanced past it).
   virtual void measure(const Clock& clock, const Particles<D>& particles,
