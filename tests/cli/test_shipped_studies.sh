@@ -27,7 +27,12 @@ study stability_dt_a
 expect_verdict stability_dt_a 'extrapolated,0.1,100.0' energy_per_particle 'blew up'
 study stability_low_density
 expect_verdict stability_low_density 'trapezoidal,0.05,1.0' energy_per_particle 'blew up'
-for name in integrators_2d small_mass tolerance stability_dt_a stability_low_density; do
+study incompressibility
+expect_verdict incompressibility 'm = 0,2' divergence.relative biased
+study incompressibility_repulsion
+expect test "$(grep -c 'blew up' incompressibility_repulsion/study.csv)" -eq 0
+for name in integrators_2d small_mass tolerance stability_dt_a stability_low_density incompressibility \
+  incompressibility_repulsion; do
   expect test -s "$name/study.html"
   expect test -z "$(grep ',missing,' "$name/study.csv")"
 done
