@@ -29,10 +29,22 @@ set logscale x
 set xrange [0.2:40]
 set yrange [2.3:3.3]
 $colloids << EOD
-COLLOIDS
+0.340 3.137 0.046
+0.680 3.073 0.023
+1.361 3.023 0.013
+2.721 3.010 0.014
+5.442 2.972 0.009
+10.884 2.901 0.008
+22.449 2.802 0.008
 EOD
 $solvent << EOD
-SOLVENT
+0.340 2.683 0.045
+0.680 2.626 0.027
+1.361 2.649 0.015
+2.721 2.623 0.009
+5.442 2.605 0.008
+10.884 2.548 0.008
+22.449 2.472 0.010
 EOD
 plot $colloids with yerrorbars pt 7 lc rgb "#1f5fa8" title "3 colloids", \
   $solvent with yerrorbars pt 5 lc rgb "#888888" title "solvent"
