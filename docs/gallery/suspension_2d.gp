@@ -26,9 +26,10 @@ set key top right
 set xlabel "Pe = rate a^2/D"
 set ylabel "viscosity"
 set logscale x
-set xrange [0.2:40]
+set xrange [0.1:40]
 set yrange [2.3:3.3]
 $colloids << EOD
+0.170 3.040 0.072
 0.340 3.137 0.046
 0.680 3.073 0.023
 1.361 3.023 0.013
@@ -38,6 +39,7 @@ $colloids << EOD
 22.449 2.802 0.008
 EOD
 $solvent << EOD
+0.170 2.513 0.072
 0.340 2.683 0.045
 0.680 2.626 0.027
 1.361 2.649 0.015
