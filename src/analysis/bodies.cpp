@@ -48,9 +48,9 @@ Bodies<D>::Bodies(ObserverSettings settings, BodiesSettings bodies, const Scene<
       bins_(static_cast<std::size_t>(std::llround(bodies.r_max / bodies.bin))),
       average_(scene.settings().bodies.size() * width + D),
       density_(scene.settings().bodies.size() * bins_),
-      places_(this->settings().name, bodies.window, bodies.fit_from,
+      places_(this->settings().name, bodies.msd.window, bodies.msd.fit_from,
               dt * static_cast<double>(this->settings().every), scene.settings().bodies.size()),
-      turns_(this->settings().name, bodies.window, bodies.fit_from,
+      turns_(this->settings().name, bodies.msd.window, bodies.msd.fit_from,
              dt * static_cast<double>(this->settings().every), scene.settings().bodies.size()) {
   share_.assign(scene.settings().bodies.size(), 0.0);
   for (std::size_t b = 0; b < scene.particles().bodies.size(); ++b) {
@@ -126,10 +126,9 @@ void Bodies<D>::follow(const Particles<D>& particles) {
     const auto q = pose.orientation.values();
     std::copy(q.begin(), q.end(), orientation_.begin() + static_cast<std::ptrdiff_t>(b * numbers));
   }
-  std::vector<int> all, rotations;
-  for (int c = 0; c < D; ++c) all.push_back(c);
+  std::vector<int> rotations;
   for (int c = 0; c < rotation_components<D>; ++c) rotations.push_back(c);
-  places_.add(std::move(centres), kind, D, all);
+  places_.add(std::move(centres), kind, D, bodies_.msd.directions);
   turns_.add(angle_, kind, D, rotations);
 }
 
@@ -201,7 +200,7 @@ void Bodies<D>::add_diffusion(const std::string& name, std::size_t kind, Results
   if (places_.windows() == 0) {
     results.notes.push_back(fmt::format(
         "{}: the measured part is shorter than the window of {}, so no diffusion coefficients",
-        this->settings().name, bodies_.window));
+        this->settings().name, bodies_.msd.window));
     return;
   }
   results.scalars.push_back({name + ".diffusion", places_.diffusion().mean(kind),

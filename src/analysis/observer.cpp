@@ -215,9 +215,7 @@ std::unique_ptr<Observer<D>> make_bodies(const Config& entry, ObserverSettings s
                                          const Scene<D>& scene, const Clock& clock) {
   if (scene.settings().bodies.empty()) entry.fail("kind", "the scene has no [[body]]");
   BodiesSettings b;
-  b.window = entry.positive("window", b.window);
-  b.fit_from = entry.non_negative("fit_from", b.window / 3.0);
-  if (b.fit_from >= b.window) entry.fail("fit_from", "must be less than window");
+  b.msd = read_msd(entry, scene);
   double most = 2.0 * scene.model().cutoff();
   for (int c = 0; c < D; ++c)
     if (scene.box().is_periodic(c)) most = std::min(most, 0.5 * scene.box().size[c]);

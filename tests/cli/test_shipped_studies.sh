@@ -29,7 +29,12 @@ study stability_low_density
 expect_verdict stability_low_density 'trapezoidal,0.05,1.0' energy_per_particle 'blew up'
 study cylinder_drag
 expect test "$(grep -c 'blew up' cylinder_drag/study.csv)" -eq 0
-for name in integrators_2d small_mass tolerance stability_dt_a stability_low_density cylinder_drag; do
+study incompressibility
+expect_verdict incompressibility 'm = 0,2' divergence.relative biased
+study incompressibility_repulsion
+expect test "$(grep -c 'blew up' incompressibility_repulsion/study.csv)" -eq 0
+for name in integrators_2d small_mass tolerance stability_dt_a stability_low_density cylinder_drag \
+  incompressibility incompressibility_repulsion; do
   expect test -s "$name/study.html"
   expect test -z "$(grep ',missing,' "$name/study.csv")"
 done

@@ -10,15 +10,15 @@
 // and the mean velocity of the fluid particles. The orientation is followed by adding up the rotation from sample to sample,
 // so it must turn by less than half a turn between two.
 #include "odpd/analysis/displacements.h"
+#include "odpd/analysis/msd.h"
 #include "odpd/analysis/observer.h"
 
 namespace odpd {
 
 struct BodiesSettings {
-  double window = 3.0;    ///< longest lag of the displacements (time)
-  double fit_from = 1.0;  ///< shortest lag of the slope (time)
-  double r_max = 2.0;     ///< of g(q) (length)
-  double bin = 0.01;      ///< its bins (length)
+  MsdSettings msd;     ///< lags; the directions are those of the centre's displacements
+  double r_max = 2.0;  ///< of g(q) (length)
+  double bin = 0.01;   ///< its bins (length)
 };
 
 template <int D>
