@@ -276,8 +276,7 @@ TEST(Msd, ADamagedCheckpointIsRefused) {
   const auto refused = [&](const auto& damage) {
     support::MemoryArchive broken = archive;
     damage(broken);
-    support::expect_error<odpd::IoError>([&] { make().load(broken); },
-                                         {"across", "damaged"});
+    support::expect_error<odpd::IoError>([&] { make().load(broken); }, {"across", "damaged"});
   };
   EXPECT_NO_THROW(make().load(archive));
   refused([](auto& a) { a.integers["lag"].clear(); });
