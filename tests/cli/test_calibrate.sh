@@ -73,7 +73,7 @@ expect_error 1 "$odpd" run asked --restart run/checkpoint.h5 --set run.duration=
 for change in density=4.1 kT=1.1 a=19.0 s_bar=1.1 s=0.6 cutoff=1.1 mass=0.1 eta=5.1; do
   expect_error 1 "$odpd" run asked --dry-run --set fluid.$change -- "fluid.${change%%=*}" 'was measured for' 'odpd calibrate'
 done
-expect_error 1 "$odpd" run asked --dry-run --set 'fluid.rattler_friction={gamma=0.1,cutoff=2.0}' -- rattler_friction
+expect_error 1 "$odpd" run asked --dry-run --set 'fluid.rattler_friction={gamma=0.1,cutoff=2.0}' -- rattler_friction 'was measured for'
 expect_error 1 "$odpd" run asked --dry-run --set 'fluid.calibration="nowhere.json"' -- fluid.calibration nowhere.json 'odpd calibrate'
 expect_error 1 "$odpd" run asked --dry-run --set 'fluid.calibration="../again/calibration.json"' -- fluid.calibration 'holds no friction'
 expect_error 1 "$odpd" run box --dry-run --set 'fluid.calibration="../found.1/calibration.json"' -- fluid.calibration 'give eta'
