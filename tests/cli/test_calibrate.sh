@@ -4,7 +4,8 @@
 source "$(dirname "$0")/lib.sh" "$@"
 
 write_periodic box
-quick=(--relative-error 0.1 --particles 64 --threads 1)
+small=(--particles 64 --threads 1)
+quick=(--relative-error 0.1 "${small[@]}")
 
 # number FILE PATH...: a number of a JSON file.
 number() { "$python" -c 'import json, sys
@@ -28,7 +29,7 @@ have_python || { skip "the numbers need $python"; finish; }
 gamma=$(number found/calibration.json result gamma)
 error=$(number found/calibration.json result eta_stderr)
 expect true_of '0 < error <= 0.5' error="$error"
-expect_exit 0 "$odpd" calibrate box --measure-only "${quick[@]}" --set fluid.gamma="$gamma" --set seed=99 \
+expect_exit 0 "$odpd" calibrate box --measure-only "${small[@]}" --set fluid.gamma="$gamma" --set seed=99 \
   --relative-error 0.05 --out again
 expect_text "$out_text" ': eta = '
 again=$(number again/calibration.json measurements 0 eta)
