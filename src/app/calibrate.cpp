@@ -44,8 +44,6 @@ void check_fluid(const Config& fluid, const SceneSettings<D>& s) {
     fluid.fail("alpha", "sets a by gamma, which is being looked for: give a instead");
   if (s.fluid.gamma_perp > 0.0)
     fluid.fail("gamma_perp", "calibration changes gamma alone: leave it out");
-  if (s.fluid.gamma_far > 0.0)
-    fluid.fail("rattler_friction", "calibration changes gamma alone: leave it out");
   if (s.species.size() > 1)
     log_warning("the fluid of [fluid] is measured, as one species: [[pair]] is left out");
 }
@@ -216,9 +214,9 @@ std::string lines_to_paste(const CalibrationRecord& r) {
   const double rate = f.shear_rate > 0.0 ? f.shear_rate : default_shear_rate(f, r.result->gamma);
   return fmt::format(
       "\n[fluid]\n# measured: eta = {} at shear rate {:.4g}\ndensity = {}\nmass = {}\nkT = {}\n"
-      "cutoff = {}\na = {}\ns_bar = {}\ns = {}\ngamma = {:.6g}\n",
+      "cutoff = {}\na = {}\ns_bar = {}\ns = {}\ngamma = {:.6g}\n{}",
       with_error(r.eta, r.eta * r.result->relative_error), rate, f.density, f.mass, f.dpd.kT,
-      f.dpd.cutoff, f.dpd.a, f.dpd.s_bar, f.dpd.s, r.result->gamma);
+      f.dpd.cutoff, f.dpd.a, f.dpd.s_bar, f.dpd.s, r.result->gamma, rattler_line(f.dpd));
 }
 
 int conclude_calibration(CalibrationRecord& record, Calibrator& calibrator, const fs::path& file) {

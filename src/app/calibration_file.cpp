@@ -26,6 +26,8 @@ std::vector<std::pair<std::string, double>> inputs_of(const CalibrationRecord& r
       {"a", f.dpd.a},
       {"s_bar", f.dpd.s_bar},
       {"s", f.dpd.s},
+      {"rattler_gamma", f.dpd.gamma_far},
+      {"rattler_cutoff", f.dpd.gamma_far > 0.0 ? f.dpd.cutoff_far : 0.0},
       {"eta", r.eta},
       {"shear_rate", f.shear_rate},
       {"particles", static_cast<double>(f.particles)},
@@ -115,6 +117,8 @@ std::optional<Calibration> read_calibration(const Config& config) {
     c.fluid.a = input("a");
     c.fluid.s_bar = input("s_bar");
     c.fluid.s = input("s");
+    c.fluid.gamma_far = input("rattler_gamma");
+    c.fluid.cutoff_far = input("rattler_cutoff");
     c.fluid.gamma = json.number({"result", "gamma"});
     c.gamma_error = json.number({"result", "gamma_stderr"});
     c.eta = json.number({"result", "eta"});

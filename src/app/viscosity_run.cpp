@@ -40,13 +40,14 @@ Config measuring_case(const MeasuredFluid& fluid, const ViscosityRun& run, doubl
       fmt::format(
           "dimension = {}\nseed = {}\n[box]\nsize = [{}]\nperiodic = [{}]\n"
           "[fluid]\ncount = {}\nmass = {}\nkT = {}\ncutoff = {}\na = {}\ns_bar = {}\n"
-          "gamma = {}\ns = {}\n[shear]\nflow = \"x\"\ngradient = \"y\"\nrate = {}\n"
+          "gamma = {}\ns = {}\n{}[shear]\nflow = \"x\"\ngradient = \"y\"\nrate = {}\n"
           "[integrator]\nname = \"trapezoidal\"\ndt = {}\n[solver]\ntolerance = 1e-4\n"
           "[run]\nequilibrate = {}\nduration = {}\n"
           "[[observe]]\nkind = \"viscosity\"\n[[observe]]\nkind = \"thermo\"\nevery = 1000000\n"
           "[[observe]]\nkind = \"msd\"\nevery = 1000000\n",
           fluid.dimension, run.seed, edges, periodic, fluid.particles, fluid.mass, p.kT, p.cutoff,
-          p.a, p.s_bar, run.gamma, p.s, run.shear_rate, dt, equilibration, 1e12 * dt),
+          p.a, p.s_bar, run.gamma, p.s, rattler_line(p), run.shear_rate, dt, equilibration,
+          1e12 * dt),
       "measuring scene");
 }
 
@@ -89,6 +90,12 @@ ViscosityMeasurement measure_in(const MeasuredFluid& fluid, const ViscosityRun& 
 }
 
 }  // namespace
+
+std::string rattler_line(const DpdParameters& p) {
+  if (p.gamma_far == 0.0) return {};
+  return fmt::format("rattler_friction = {{ gamma = {}, cutoff = {} }}\n", p.gamma_far,
+                     p.cutoff_far);
+}
 
 double MeasuredFluid::box_edge() const {
   return std::pow(static_cast<double>(particles) / density, 1.0 / dimension);

@@ -23,15 +23,16 @@ double calibrated_friction(const Config& fluid, const std::optional<Calibration>
     fluid.fail("alpha",
                "sets a by gamma, which fluid.calibration sets by measurements at one a: give a "
                "instead");
-  if (fluid.has("rattler_friction"))
-    fluid.fail("rattler_friction",
-               "is friction that fluid.calibration has not measured: leave one of them out");
   const auto same = [&](const char* key, double measured, double value) {
     // A density may come from a count and a volume.
     if (std::abs(measured - value) <= 1e-9 * std::max(std::abs(measured), std::abs(value))) return;
-    fluid.fail(key, fmt::format("{} was measured for {} = {}, this fluid has {}: measure again "
-                                "with odpd calibrate CASE, and name its file",
-                                c.file, key, measured, value));
+    // Of the table rattler_friction its two numbers.
+    const std::string path(key);
+    fluid.fail(
+        path.substr(0, path.find('.')),
+        fmt::format("{} was measured for {} = {}, this fluid has {}: measure again with odpd "
+                    "calibrate CASE, and name its file",
+                    c.file, key, measured, value));
   };
   if (c.dimension != here.dimension)
     fluid.fail("calibration", fmt::format("{} was measured with dimension = {}, this case has {}: "
@@ -45,6 +46,9 @@ double calibrated_friction(const Config& fluid, const std::optional<Calibration>
   same("a", c.fluid.a, here.p.a);
   same("s_bar", c.fluid.s_bar, here.p.s_bar);
   same("s", c.fluid.s, here.p.s);
+  same("rattler_friction.gamma", c.fluid.gamma_far, here.p.gamma_far);
+  if (here.p.gamma_far > 0.0)
+    same("rattler_friction.cutoff", c.fluid.cutoff_far, here.p.cutoff_far);
   same("eta", c.eta, *eta);
   return c.fluid.gamma;
 }

@@ -141,11 +141,6 @@ void read_fluid(const Config& config, const std::optional<Calibration>& calibrat
       scene.physical_inputs.any()
           ? read_physical_fluid<D>(fluid, scene.physical_inputs, density, scene.mass)
           : read_pair(fluid, DpdParameters{}, true);
-  if (names_calibration(fluid)) {
-    base.gamma = calibrated_friction(fluid, calibration, scene.physical_inputs.eta,
-                                     {D, density, scene.mass, base});
-    scene.calibration = calibration;
-  }
   if (fluid.has("rattler_friction")) {
     const Config far = fluid.table("rattler_friction");
     base.gamma_far = far.positive("gamma");
@@ -155,6 +150,11 @@ void read_fluid(const Config& config, const std::optional<Calibration>& calibrat
                fmt::format(
                    "must be larger than fluid.cutoff = {}, to reach particles without neighbours",
                    base.cutoff));
+  }
+  if (names_calibration(fluid)) {
+    base.gamma = calibrated_friction(fluid, calibration, scene.physical_inputs.eta,
+                                     {D, density, scene.mass, base});
+    scene.calibration = calibration;
   }
   scene.fluid = base;
   read_pairs(config, scene);

@@ -4,7 +4,8 @@
 source "$(dirname "$0")/lib.sh" "$@"
 
 write_periodic box
-quick=(--relative-error 0.1 --particles 64 --threads 1)
+small=(--particles 64 --threads 1)
+quick=(--relative-error 0.1 "${small[@]}")
 
 # number FILE PATH...: a number of a JSON file.
 number() { "$python" -c 'import json, sys
@@ -28,7 +29,7 @@ have_python || { skip "the numbers need $python"; finish; }
 gamma=$(number found/calibration.json result gamma)
 error=$(number found/calibration.json result eta_stderr)
 expect true_of '0 < error <= 0.5' error="$error"
-expect_exit 0 "$odpd" calibrate box --measure-only "${quick[@]}" --set fluid.gamma="$gamma" --set seed=99 \
+expect_exit 0 "$odpd" calibrate box --measure-only "${small[@]}" --set fluid.gamma="$gamma" --set seed=99 \
   --relative-error 0.05 --out again
 expect_text "$out_text" ': eta = '
 again=$(number again/calibration.json measurements 0 eta)
@@ -73,7 +74,7 @@ expect_error 1 "$odpd" run asked --restart run/checkpoint.h5 --set run.duration=
 for change in density=4.1 kT=1.1 a=19.0 s_bar=1.1 s=0.6 cutoff=1.1 mass=0.1 eta=5.1; do
   expect_error 1 "$odpd" run asked --dry-run --set fluid.$change -- "fluid.${change%%=*}" 'was measured for' 'odpd calibrate'
 done
-expect_error 1 "$odpd" run asked --dry-run --set 'fluid.rattler_friction={gamma=0.1,cutoff=2.0}' -- rattler_friction
+expect_error 1 "$odpd" run asked --dry-run --set 'fluid.rattler_friction={gamma=0.1,cutoff=2.0}' -- rattler_friction 'was measured for'
 expect_error 1 "$odpd" run asked --dry-run --set 'fluid.calibration="nowhere.json"' -- fluid.calibration nowhere.json 'odpd calibrate'
 expect_error 1 "$odpd" run asked --dry-run --set 'fluid.calibration="../again/calibration.json"' -- fluid.calibration 'holds no friction'
 expect_error 1 "$odpd" run box --dry-run --set 'fluid.calibration="../found.1/calibration.json"' -- fluid.calibration 'give eta'

@@ -4,6 +4,7 @@
 // <S^2> t = 2 kT eta/V, so its relative error after a time t is sqrt(2 kT/(eta V t))/rate, whatever the box.
 #include <cstdint>
 #include <functional>
+#include <string>
 
 #include "odpd/app/calibration.h"
 #include "odpd/pairs/dpd.h"
@@ -22,13 +23,16 @@ struct MeasuredFluid {
 
   double box_edge() const;  ///< (particles/density)^(1/d)
   /// gamma only sets the unit of time, so that eta is proportional to it.
-  bool linear() const { return mass == 0.0 && shear_rate == 0.0; }
+  bool linear() const { return mass == 0.0 && shear_rate == 0.0 && dpd.gamma_far == 0.0; }
 };
 
 /// Particles of a cube with an edge of 8 (2D) or 6 (3D) cutoffs.
 std::int64_t default_particles(int dimension, double density, double cutoff);
 /// 9 kT/(gamma r_c^2), and with mass at most half a thermal velocity over r_c.
 double default_shear_rate(const MeasuredFluid& fluid, double gamma);
+
+/// "rattler_friction = ..." as a line of [fluid], "" without it.
+std::string rattler_line(const DpdParameters& p);
 
 struct ViscosityRun {
   double gamma = 4.5;

@@ -14,7 +14,7 @@ struct Calibration {
   int dimension = 2;
   double density = 0.0;  ///< n (1/length^d)
   double mass = 0.0;
-  DpdParameters fluid;       ///< kT, cutoff, a, s_bar, s; gamma is the result
+  DpdParameters fluid;  ///< kT, cutoff, a, s_bar, s, gamma_far, cutoff_far; gamma is the result
   double gamma_error = 0.0;  ///< standard error of gamma
   double eta = 0.0;          ///< viscosity asked for, which gamma gives
   double eta_error = 0.0;    ///< standard error of the viscosity at gamma
@@ -31,8 +31,8 @@ struct FluidState {
 };
 
 /// The calibrated friction of a fluid that is described by `eta`, with `here` its state and parameters. Throws ConfigError
-/// at the key in which the calibration (the contents of the file it names) differs, or that it does not cover (alpha,
-/// rattler_friction), and without `eta` or `calibration`.
+/// at the key in which the calibration (the contents of the file it names) differs, with `alpha`, whose a
+/// would follow from gamma, and without `eta` or `calibration`.
 double calibrated_friction(const Config& fluid, const std::optional<Calibration>& calibration,
                            const std::optional<double>& eta, const FluidState& here);
 
