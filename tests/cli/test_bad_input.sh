@@ -261,6 +261,33 @@ expect_error 1 run box/checked.toml --set check.0.relative_tolerance=0.1 -- chec
 
 # Nothing that stands in the case file itself was found out only after something was written.
 expect test ! -e runs
+# --- obstacles and bodies ---
+write_periodic box
+cp -r box obstacle
+cat >>obstacle/case.toml <<'CASE'
+
+[[body]]
+shape = "square"
+side = 0.2
+positions = [{ at = [1.0, 1.0] }]
+CASE
+body() { run obstacle --set "body.0.$1" "${@:2}"; }
+expect_exit 0 body motion=fixed --out obstructed
+expect_error 1 body shape=sphere -- body shape 'points, square, ring, disk'
+expect_error 1 body side=0.0 -- body side positive
+expect_error 1 body side=5.0 -- body shape 'across'
+expect_error 1 body shape=points -- body points
+expect_error 1 body per_side=1 -- body shape 'turns'
+expect_error 1 body motion=stuck -- body motion 'free, fixed, given'
+expect_error 1 body velocity='[1.0, 0.0]' -- velocity
+expect_error 1 body count=3 -- body count positions
+expect_error 1 body 'positions=[{at=[-1.0, 1.0]}]' -- positions 'outside the box'
+expect_error 1 body name='a b' -- body name
+expect_error 1 body species=stone -- species "'stone'"
+expect_error 1 body motion=free --set fluid.mass=1.0 --set integrator.name=shardlow -- integrator.name '[[body]]'
+expect_error 1 body force='[1.0, 0.0]' --set integrator.name=monte-carlo --set integrator.dt=1.0 -- 'pushed'
+expect_error 1 body motion=free --set 'shear={rate=1.0}' -- shear '[[body]]'
+expect_error 1 run box --set 'observe=[{kind="bodies"}]' -- kind '[[body]]'
 # --- molecules and bonds ---
 write_periodic box
 cp -r box chain

@@ -388,6 +388,43 @@ same_run joined_whole joined_part
 printf 'i,j,r_0\n0,1,0.5\n1,18,0.7\n' >joined/bonds.csv
 expect_error 1 run joined --restart joined_part/checkpoint.h5 -- 'other bonds'
 
+# --- bodies: poses and what they carry are state; free, turned by hand and fixed ones ---
+cp -r many bodies
+cat >>bodies/case.toml <<'CASE'
+
+[[body]]
+shape = "ring"
+radius = 0.3
+points_on_ring = 4
+torque = 1.0
+count = 3
+
+[[body]]
+name = "rotor"
+shape = "square"
+side = 0.3
+motion = "given"
+velocity = [1.0, 0.0]
+angular_velocity = 20.0
+positions = [{ at = [2.5, 3.0] }]
+
+[[observe]]
+kind = "bodies"
+window = 0.02
+every = 1
+series = true
+CASE
+for scheme in trapezoidal extrapolated implicit mass:trapezoidal monte-carlo; do
+  settings=(--set "integrator.name=${scheme#mass:}" --set neighbours.reorder_every=4)
+  [[ $scheme == mass:* ]] && settings+=(--set fluid.mass=0.2)
+  [[ $scheme == monte-carlo ]] && settings+=(--set 'body.1.motion="fixed"' --set body.0.torque=0.0)
+  name=bodies-${scheme/:/_}
+  [[ $scheme == monte-carlo ]] && sed '/^velocity = \[1/d; /^angular_velocity/d' -i bodies/case.toml
+  expect_exit 0 run bodies --threads 1 "${settings[@]}" --out "$name"
+  expect_exit 0 run bodies --threads 2 "${settings[@]}" --set run.duration=0.05 --out "$name-parts"
+  expect_exit 0 run bodies --threads 1 "${settings[@]}" --restart "$name-parts/checkpoint.h5"
+  same_run "$name" "$name-parts"
+done
 # --- sheared: the images slide by the time alone, so a run continues amidst it; without a rate it is the periodic box ---
 for scheme in trapezoidal midpoint extrapolated implicit euler mass:trapezoidal mass:extrapolated mass:setd \
   mass:velocity-verlet mass:shardlow; do
