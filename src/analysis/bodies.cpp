@@ -41,9 +41,10 @@ constexpr double excluded = 1e-3;  // g below this is none
 
 template <int D>
 Bodies<D>::Bodies(ObserverSettings settings, BodiesSettings bodies, const Scene<D>& scene,
-                  double dt)
+                  double dt, bool in_time)
     : Observer<D>(std::move(settings)),
       bodies_(bodies),
+      in_time_(in_time),
       scene_(scene),
       bins_(static_cast<std::size_t>(std::llround(bodies.r_max / bodies.bin))),
       average_(scene.settings().bodies.size() * width + D),
@@ -63,7 +64,8 @@ Bodies<D>::Bodies(ObserverSettings settings, BodiesSettings bodies, const Scene<
 }
 
 template <int D>
-void Bodies<D>::add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& noise, double weight) {
+void Bodies<D>::add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& noise,
+                          const std::vector<Vec<D>>& noise_arms, double weight) {
   std::vector<Vec<D>> force(stage.position.size());
   add_conservative_forces(stage.network, force);
   add_friction_forces<D>(stage.network, stage.velocity, force);
@@ -71,9 +73,9 @@ void Bodies<D>::add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& nois
   for (std::size_t b = 0; b < kind_.size(); ++b) {
     Vec<D> total{}, moment{};
     for (const std::size_t p : members_[b]) {
-      const Vec<D> f = weight * (force[p] + noise[p]);
-      total += f;
-      moment += torque(stage.arms[p], f);
+      total += weight * (force[p] + noise[p]);
+      // The random torque acts with the arms of the step's start in both stages, as the scheme has it.
+      moment += weight * (torque(stage.arms[p], force[p]) + torque(noise_arms[p], noise[p]));
     }
     double* const out = &newest_[kind_[b] * width];
     for (std::size_t c = 0; c < D; ++c) out[c] += share_[kind_[b]] * total.x[c];
@@ -162,11 +164,12 @@ void Bodies<D>::measure(const Clock&, const Particles<D>& particles, const StepR
   std::vector<Vec<D>> noise(record.start.position.size());
   if (!record.edge_noise.empty())
     add_edge_forces<D>(record.start.network, record.edge_noise, noise);
-  add_stage(record.start, noise, record.start_weight);
-  if (record.has_corrector()) add_stage(record.corrector, noise, 1.0 - record.start_weight);
+  add_stage(record.start, noise, record.start.arms, record.start_weight);
+  if (record.has_corrector())
+    add_stage(record.corrector, noise, record.start.arms, 1.0 - record.start_weight);
   add_motion(particles, record);
   average_.add(newest_);
-  follow(particles);
+  if (in_time_) follow(particles);
   count_fluid(particles, record.start);
 }
 
@@ -196,7 +199,7 @@ double Bodies<D>::exclusion_radius(std::size_t kind) const {
 
 template <int D>
 void Bodies<D>::add_diffusion(const std::string& name, std::size_t kind, Results& results) const {
-  if (scene_.settings().bodies[kind].motion != BodyMotion::free) return;
+  if (!in_time_ || scene_.settings().bodies[kind].motion != BodyMotion::free) return;
   if (places_.windows() == 0) {
     results.notes.push_back(fmt::format(
         "{}: the measured part is shorter than the window of {}, so no diffusion coefficients",

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "odpd/analysis/bodies.h"
 #include "odpd/analysis/density_residual.h"
@@ -189,6 +190,8 @@ MsdSettings read_msd(const Config& entry, const Scene<D>& scene) {
     for (const auto& wall : scene.settings().walls) flows = flows || wall.velocity[c] != 0.0;
     const auto& shear = scene.box().shear;
     flows = flows || (shear && shear->flow == c);
+    for (const auto& body : scene.settings().bodies)
+      flows = flows || body.velocity.velocity[c] != 0.0 || body.load.force[c] != 0.0;
     if (!flows) fallback.push_back(names.back());
   }
   if (fallback.empty())
@@ -212,20 +215,20 @@ MsdSettings read_msd(const Config& entry, const Scene<D>& scene) {
 
 template <int D>
 std::unique_ptr<Observer<D>> make_bodies(const Config& entry, ObserverSettings settings,
-                                         const Scene<D>& scene, const Clock& clock) {
+                                         const Scene<D>& scene, const Clock& clock, bool in_time) {
   if (scene.settings().bodies.empty()) entry.fail("kind", "the scene has no [[body]]");
   BodiesSettings b;
   b.msd = read_msd(entry, scene);
-  double most = 2.0 * scene.model().cutoff();
+  double most = std::numeric_limits<double>::infinity();
   for (int c = 0; c < D; ++c)
     if (scene.box().is_periodic(c)) most = std::min(most, 0.5 * scene.box().size[c]);
-  b.r_max = entry.positive("r_max", most);
-  if (b.r_max > most && most < 2.0 * scene.model().cutoff())
+  b.r_max = entry.positive("r_max", std::min(most, 2.0 * scene.model().cutoff()));
+  if (b.r_max > most)
     entry.fail("r_max",
                fmt::format("must be at most half the shortest periodic edge of the box, {}", most));
   b.bin = entry.positive("bin", b.bin);
   if (b.bin > b.r_max) entry.fail("bin", "must be less than r_max");
-  return std::make_unique<Bodies<D>>(std::move(settings), b, scene, clock.dt);
+  return std::make_unique<Bodies<D>>(std::move(settings), b, scene, clock.dt, in_time);
 }
 
 template <int D>
@@ -320,7 +323,7 @@ std::unique_ptr<Observer<D>> make_observer(const Config& entry, const std::strin
       entry.fail("kind", "the scene has no [[wall]] to feel a force");
     return std::make_unique<WallForce<D>>(std::move(settings), scene);
   }
-  if (kind == "bodies") return make_bodies(entry, std::move(settings), scene, clock);
+  if (kind == "bodies") return make_bodies(entry, std::move(settings), scene, clock, in_time);
   if (kind == "molecules") {
     if (scene.settings().molecules.empty()) entry.fail("kind", "the scene has no [[molecule]]");
     return std::make_unique<MoleculeStatistics<D>>(std::move(settings), read_msd(entry, scene),

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/analysis/places.h"
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
 
@@ -102,30 +103,6 @@ void add_in_blocks(std::size_t n, std::size_t width, const Item& item, std::vect
   });
   for (std::size_t k = 0; k < blocks.size(); ++k) sum[k % width] += blocks[k];
 }
-
-// Where forces count: at the particles, or, on constituents of bodies whose motion is unknown, at the centres of those.
-template <int D>
-class Places {
- public:
-  Places(const Particles<D>& particles, const Stage<D>& stage)
-      : particles_(particles), stage_(stage) {}
-  Vec<D> at(std::size_t i) const { return stage_.position[i] - arm(i); }
-  /// From the place of j to that of i.
-  Vec<D> between(const PairNetwork<D>& network, std::size_t k) const {
-    const Vec<D> pair = network.r[k] * network.e[k];
-    if (stage_.arms.empty()) return pair;
-    return pair - arm(static_cast<std::size_t>(network.i[k])) +
-           arm(static_cast<std::size_t>(network.j[k]));
-  }
-
- private:
-  Vec<D> arm(std::size_t i) const {
-    return stage_.arms.empty() || particles_.group[i] >= 0 ? Vec<D>{} : stage_.arms[i];
-  }
-
-  const Particles<D>& particles_;
-  const Stage<D>& stage_;
-};
 
 template <int D>
 void add_stage_stress(const StressGrid<D>& grid, const Places<D>& places, const Stage<D>& stage,

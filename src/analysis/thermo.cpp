@@ -1,7 +1,9 @@
 #include "odpd/analysis/thermo.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "odpd/analysis/places.h"
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
 
@@ -59,16 +61,21 @@ void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepR
   std::vector<double> force_squared, laplacian, virial(static_cast<std::size_t>(network.size()));
   double wall_energy = 0.0;
   configurational_terms(scene_, particles, record.start, force_squared, laplacian, wall_energy);
+  const Places<D> places(particles, record.start);
   for (std::size_t k = 0; k < virial.size(); ++k) {
-    const bool both_free = particles.is_free(static_cast<std::size_t>(network.i[k])) &&
-                           particles.is_free(static_cast<std::size_t>(network.j[k]));
-    virial[k] = (both_free ? 1.0 : 0.5) * network.r[k] * network.f_c[k];
+    const bool known = particles.is_known(static_cast<std::size_t>(network.i[k])) ||
+                       particles.is_known(static_cast<std::size_t>(network.j[k]));
+    virial[k] =
+        (known ? 0.5 : 1.0) * dot(places.between(network, k), network.e[k]) * network.f_c[k];
   }
   const auto n = static_cast<double>(particles.free_count());
+  const auto bodies =
+      static_cast<double>(std::count_if(particles.bodies.begin(), particles.bodies.end(),
+                                        [](const RigidBody<D>& body) { return !body.known; }));
   const double volume = scene_.fluid_volume();
   newest_ = {(network.u.sum() + wall_energy) / n,
-             (n * scene_.largest_kT() + fixed_sum(virial) / D) / volume, fixed_sum(force_squared),
-             fixed_sum(laplacian),
+             ((n + bodies) * scene_.largest_kT() + fixed_sum(virial) / D) / volume,
+             fixed_sum(force_squared), fixed_sum(laplacian),
              kinetic_temperature(scene_, particles, peculiar(record.start, record.v_start))};
   average_.add(newest_);
 }

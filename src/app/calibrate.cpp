@@ -44,6 +44,8 @@ void check_fluid(const Config& fluid, const SceneSettings<D>& s) {
     fluid.fail("alpha", "sets a by gamma, which is being looked for: give a instead");
   if (s.fluid.gamma_perp > 0.0)
     fluid.fail("gamma_perp", "calibration changes gamma alone: leave it out");
+  if (s.zeta_0 > 0.0)
+    log_warning("fluid.zeta_0 is left out of the measurement: it would take momentum away");
   if (s.species.size() > 1)
     log_warning("the fluid of [fluid] is measured, as one species: [[pair]] is left out");
 }

@@ -48,6 +48,14 @@ std::vector<std::int64_t> bond_ends(const std::vector<Bond>& bonds) {
   return ends;
 }
 
+// Their law's numbers, which a file may give.
+std::vector<double> bond_numbers(const std::vector<Bond>& bonds) {
+  std::vector<double> numbers;
+  for (const Bond& bond : bonds)
+    numbers.insert(numbers.end(), {bond.p.H, bond.p.r_0, bond.p.r_max});
+  return numbers;
+}
+
 template <int D>
 DynamicsSettings dynamics_of(DynamicsSettings settings, const Scene<D>& scene) {
   settings.mass = scene.settings().mass;
@@ -284,7 +292,10 @@ void Simulation<D>::save(CheckpointWriter& out) const {
   if (const auto& shear = scene_.box().shear)
     run.write("shear_start", std::vector<double>{shear->start});
   run.write_text("instructions", std::string(isa_name(isa())));
-  if (!scene_.bonds().empty()) run.write("bonds", bond_ends(scene_.bonds()));
+  if (!scene_.bonds().empty()) {
+    run.write("bonds", bond_ends(scene_.bonds()));
+    run.write("bond_numbers", bond_numbers(scene_.bonds()));
+  }
   if (const auto& calibration = scene_.settings().calibration)
     run.write("calibrated_gamma", std::vector<double>{calibration->fluid.gamma});
   dynamics_.solver().save(out.component("solver"));
@@ -306,7 +317,8 @@ void Simulation<D>::load(CheckpointReader& in) {
         "the number of threads, "
         "nothing else",
         what));
-  if (!scene_.bonds().empty() && run.read_integers("bonds") != bond_ends(scene_.bonds()))
+  if (!scene_.bonds().empty() && (run.read_integers("bonds") != bond_ends(scene_.bonds()) ||
+                                  run.read_doubles("bond_numbers") != bond_numbers(scene_.bonds())))
     throw ConfigError(
         "the checkpoint has other bonds than the file of [bonds] now: restore that file");
   if (const auto& shear = scene_.box().shear;

@@ -412,8 +412,14 @@ std::int64_t Dynamics<D>::move(const std::vector<Vec<D>>& velocity, double dt, d
         ++caught[static_cast<std::size_t>(begin / range)];
     }
   });
-  for (const std::size_t b : moved)
+  for (const std::size_t b : moved) {
     place(b, particles_.bodies[b].pose, particles_.position, &particles_.image);
+    // The mirror does not turn bodies back: a constituent outside the box is an alarm.
+    for (const std::int32_t p : dofs().constituents(b)) {
+      Vec<D> r = particles_.position[static_cast<std::size_t>(p)];
+      if (surroundings_.confine(r)) ++caught.front();
+    }
+  }
   return std::accumulate(caught.begin(), caught.end(), std::int64_t{0});
 }
 

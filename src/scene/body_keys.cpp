@@ -164,6 +164,11 @@ BodySettings<D> read_body(const Config& entry, const Box<D>& box) {
   if (body.motion == BodyMotion::given) {
     body.velocity.velocity = optional_body_vector<D>(entry, "velocity");
     body.velocity.angular = turning_vector<D>(entry, "angular_velocity");
+    for (int c = 0; c < D; ++c)
+      if (!box.is_periodic(c) && body.velocity.velocity[c] != 0.0)
+        entry.fail("velocity", fmt::format("direction {} is bounded: the body would leave the box "
+                                           "through its wall",
+                                           "xyz"[c]));
   }
   if (body.motion == BodyMotion::free) {
     body.load.force = optional_body_vector<D>(entry, "force");

@@ -213,6 +213,11 @@ void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<
     const std::int64_t count =
         settings.count > 0 ? settings.count : std::llround(settings.density * volume);
     if (count < 1) throw ConfigError("the fluid has no particles: raise fluid.density or the box");
+    if (settings.start == StartKind::lattice && !settings.bodies.empty())
+      throw ConfigError(
+          "start.from = \"lattice\" would put fluid inside the bodies of the scene: use "
+          "\"random\", "
+          "which keeps out of them, or \"file\"");
     points = settings.start == StartKind::lattice
                  ? lattice(low, high, count)
                  : random_points(settings.seed, settings.box, low, high, count, particles);

@@ -421,6 +421,10 @@ SceneSettings<D> read_scene_settings(const Config& config,
   read_walls(config, scene);
   for (const Config& entry : config.tables("body")) {
     scene.bodies.push_back(read_body<D>(entry, scene.box));
+    const std::string& name = scene.bodies.back().name;
+    for (std::size_t k = 0; k + 1 < scene.bodies.size(); ++k)
+      if (scene.bodies[k].name == name)
+        entry.fail("name", fmt::format("two [[body]] are named '{}': give each a name", name));
     scene.bodies.back().species = species_index(scene.species, entry, "species",
                                                 entry.text("species", scene.species[0].name));
   }

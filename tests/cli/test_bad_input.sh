@@ -285,7 +285,7 @@ expect_error 1 body 'positions=[{at=[-1.0, 1.0]}]' -- positions 'outside the box
 expect_error 1 body name='a b' -- body name
 expect_error 1 body species=stone -- species "'stone'"
 expect_error 1 body motion=free --set fluid.mass=1.0 --set integrator.name=shardlow -- integrator.name '[[body]]'
-expect_error 1 body force='[1.0, 0.0]' --set integrator.name=monte-carlo --set integrator.dt=1.0 -- 'pushed'
+expect_error 1 body force='[1.0, 0.0]' --set integrator.name=monte-carlo -- 'pushed'
 expect_error 1 body motion=free --set 'shear={rate=1.0}' -- shear '[[body]]'
 expect_error 1 run box --set 'observe=[{kind="bodies"}]' -- kind '[[body]]'
 # --- molecules and bonds ---

@@ -24,7 +24,9 @@ struct BodiesSettings {
 template <int D>
 class Bodies : public Observer<D> {
  public:
-  Bodies(ObserverSettings settings, BodiesSettings bodies, const Scene<D>& scene, double dt);
+  /// in_time: steps are steps in time; otherwise (Monte Carlo) there are neither velocities nor diffusion.
+  Bodies(ObserverSettings settings, BodiesSettings bodies, const Scene<D>& scene, double dt,
+         bool in_time = true);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
@@ -36,7 +38,8 @@ class Bodies : public Observer<D> {
  private:
   static constexpr std::size_t turns = rotation_components<D>;
   static constexpr std::size_t width = 2 * (D + turns);  // columns of a [[body]]
-  void add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& noise, double weight);
+  void add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& noise,
+                 const std::vector<Vec<D>>& noise_arms, double weight);
   void add_motion(const Particles<D>& particles, const StepRecord<D>& record);
   void follow(const Particles<D>& particles);
   void count_fluid(const Particles<D>& particles, const Stage<D>& stage);
@@ -44,6 +47,7 @@ class Bodies : public Observer<D> {
   double exclusion_radius(std::size_t kind) const;
 
   BodiesSettings bodies_;
+  bool in_time_;
   const Scene<D>& scene_;
   std::vector<std::size_t> kind_;                  // of each body
   std::vector<std::string> names_;                 // of each [[body]]

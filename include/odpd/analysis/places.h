@@ -1,0 +1,33 @@
+#pragma once
+// The molecular virial: forces on the constituents of a rigid body act at its centre, so that the constraint forces inside it
+// need not be known.
+#include "odpd/dynamics/step_record.h"
+#include "odpd/particles/particles.h"
+
+namespace odpd {
+
+/// Where forces count: at the particles, or, on constituents of bodies whose motion is unknown, at the centres of those.
+template <int D>
+class Places {
+ public:
+  Places(const Particles<D>& particles, const Stage<D>& stage)
+      : particles_(particles), stage_(stage) {}
+  Vec<D> at(std::size_t i) const { return stage_.position[i] - arm(i); }
+  /// From the place of j to that of i.
+  Vec<D> between(const PairNetwork<D>& network, std::size_t k) const {
+    const Vec<D> pair = network.r[k] * network.e[k];
+    if (stage_.arms.empty()) return pair;
+    return pair - arm(static_cast<std::size_t>(network.i[k])) +
+           arm(static_cast<std::size_t>(network.j[k]));
+  }
+
+ private:
+  Vec<D> arm(std::size_t i) const {
+    return stage_.arms.empty() || particles_.group[i] >= 0 ? Vec<D>{} : stage_.arms[i];
+  }
+
+  const Particles<D>& particles_;
+  const Stage<D>& stage_;
+};
+
+}  // namespace odpd
