@@ -11,8 +11,7 @@
 
 namespace odpd {
 
-namespace {
-
+// (Captured by lambdas, so not in the anonymous namespace.)
 // Adds tensors that live on lines or points to the region and its bins, all as sums of r (x) F (volume not divided out).
 template <int D>
 class StressGrid {
@@ -89,6 +88,8 @@ class StressGrid {
   Vec<D> low_, high_;
   StressBins bins_;
 };
+
+namespace {
 
 // sum += item(k, partial sum) over 0 <= k < n, in fixed blocks.
 template <class Item>
