@@ -158,15 +158,15 @@ TYPED_TEST(MovingBodies, SpinFreelyWithoutFriction) {
   EXPECT_GT(norm(particles.bodies[0].pose.orientation.turn(body.frame[0]) - body.frame[0]), 0.01);
 }
 
-// <P^2> = d M kT (1 - M/M_all) of a body of mass M where all momenta add up to zero, and <L w> = kT; 2 bodies over 60000
-// steps, decorrelating within about 10: standard error about 1.3 %.
+// <P^2> = d M kT (1 - M/M_all) of a body of mass M where all momenta add up to zero, and <L w> = kT; 2 bodies over 20000
+// steps, decorrelating within about 10: standard error about 2.2 %.
 TEST(MovingBodies, HaveTheTemperatureOfTheFluid) {
   constexpr int D = 2;
   const double mass = 1.0;
   Swarm<D> swarm(DpdParameters{}, mass, 6, 1e-6);
   const auto integrator = make_integrator<D>("trapezoidal");
   double linear = 0.0, angular = 0.0, samples = 0.0;
-  for (Clock clock{.dt = 0.02, .total_steps = 61000}; !clock.finished(); clock.advance()) {
+  for (Clock clock{.dt = 0.02, .total_steps = 21000}; !clock.finished(); clock.advance()) {
     integrator->step(*swarm.dynamics, clock);
     if (clock.step < 1000) continue;
     const auto index = swarm.particles.index_of_id();
@@ -186,8 +186,8 @@ TEST(MovingBodies, HaveTheTemperatureOfTheFluid) {
       samples += 1.0;
     }
   }
-  EXPECT_NEAR(linear / samples, 1.0 - 3.0 / 42.0, 0.06);
-  EXPECT_NEAR(angular / samples, 1.0, 0.06);
+  EXPECT_NEAR(linear / samples, 1.0 - 3.0 / 42.0, 0.08);
+  EXPECT_NEAR(angular / samples, 1.0, 0.08);
 }
 
 }  // namespace
