@@ -1,4 +1,4 @@
-// Rigid bodies in motion: order of the step, mechanics without friction, temperature, threads.
+// Rigid bodies in motion: order of the step, mechanics without friction, threads.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,76 +8,12 @@
 #include "odpd/pairs/dpd.h"
 #include "support/dimensions.h"
 #include "support/points.h"
+#include "support/swarm.h"
 
 namespace odpd {
 namespace {
 
-template <int D>
-struct Swarm {
-  // Fluid on a lattice 0.7 apart with two bodies in it, in a periodic box.
-  Swarm(const DpdParameters& fluid, double mass, int side, double tolerance = 1e-12)
-      : model(1, {fluid}) {
-    box.size = support::uniform_vec<D>(0.7 * side);
-    box.periodic.fill(true);
-    for (const double where : {0.25, 0.7}) {
-      RigidBody<D> body;
-      for (int k = 0; k < D + 1; ++k) {
-        Vec<D> b{};
-        if (k > 0) b[k - 1] = k == 1 ? 0.5 : 0.4;
-        body.frame.push_back(b);
-      }
-      Vec<D> mean{};
-      for (const Vec<D>& b : body.frame) mean += (1.0 / (D + 1)) * b;
-      for (Vec<D>& b : body.frame) b -= mean;
-      body.pose.centre = where * box.size;
-      particles.add_body(body, box, 0);
-    }
-    std::int64_t sites = 1;
-    for (int c = 0; c < D; ++c) sites *= side;
-    const auto shake = support::random_vectors<D>(static_cast<std::size_t>(sites), 3);
-    for (std::int64_t n = 0; n < sites; ++n) {
-      Vec<D> r = 0.1 * shake[static_cast<std::size_t>(n)];
-      std::int64_t rest = n;
-      for (int c = 0; c < D; ++c, rest /= side) r[c] += 0.7 * static_cast<double>(rest % side);
-      box.wrap(r);
-      particles.add(r, 0, 0);
-    }
-    DynamicsSettings settings;
-    settings.mass = mass;
-    settings.kT = fluid.kT;
-    settings.reorder_every = 7;
-    dynamics = std::make_unique<Dynamics<D>>(box, particles, model, nothing,
-                                             make_solver({.name = "pcg", .tolerance = tolerance}),
-                                             settings);
-  }
-  void run(const std::string& scheme, double dt, std::int64_t steps) {
-    const auto integrator = make_integrator<D>(scheme);
-    for (Clock clock{.dt = dt, .total_steps = steps}; !clock.finished(); clock.advance())
-      integrator->step(*dynamics, clock);
-  }
-  // Positions by identity.
-  std::vector<Vec<D>> positions() const {
-    std::vector<Vec<D>> r;
-    for (const std::int32_t i : particles.index_of_id())
-      r.push_back(particles.position[static_cast<std::size_t>(i)]);
-    return r;
-  }
-  double distance(const Swarm& other) const {
-    double sum = 0.0;
-    const auto a = positions(), b = other.positions();
-    for (std::size_t k = 0; k < a.size(); ++k) {
-      const Vec<D> d = box.separation(a[k], b[k]);
-      sum += dot(d, d);
-    }
-    return std::sqrt(sum);
-  }
-
-  Box<D> box;
-  Particles<D> particles;
-  DpdModel<D> model;
-  NoSurroundings<D> nothing;
-  std::unique_ptr<Dynamics<D>> dynamics;
-};
+using support::Swarm;
 
 template <class Dimension>
 class MovingBodies : public ::testing::Test {};
@@ -156,38 +92,6 @@ TYPED_TEST(MovingBodies, SpinFreelyWithoutFriction) {
   EXPECT_LT(norm(angular_momentum() - before), 1e-10 * norm(before));
   // It did turn.
   EXPECT_GT(norm(particles.bodies[0].pose.orientation.turn(body.frame[0]) - body.frame[0]), 0.01);
-}
-
-// <P^2> = d M kT (1 - M/M_all) of a body of mass M where all momenta add up to zero, and <L w> = kT; 2 bodies over 20000
-// steps, decorrelating within about 10: standard error about 2.2 %.
-TEST(MovingBodies, HaveTheTemperatureOfTheFluid) {
-  constexpr int D = 2;
-  const double mass = 1.0;
-  Swarm<D> swarm(DpdParameters{}, mass, 6, 1e-6);
-  const auto integrator = make_integrator<D>("trapezoidal");
-  double linear = 0.0, angular = 0.0, samples = 0.0;
-  for (Clock clock{.dt = 0.02, .total_steps = 21000}; !clock.finished(); clock.advance()) {
-    integrator->step(*swarm.dynamics, clock);
-    if (clock.step < 1000) continue;
-    const auto index = swarm.particles.index_of_id();
-    for (const RigidBody<D>& body : swarm.particles.bodies) {
-      Vec<D> p{};
-      double l = 0.0, inertia = 0.0;
-      for (std::size_t k = 0; k < body.members.size(); ++k) {
-        const Vec<D> a = body.pose.orientation.turn(body.frame[k]);
-        const Vec<D>& v = swarm.particles.end_velocity[static_cast<std::size_t>(
-            index[static_cast<std::size_t>(body.members[k])])];
-        p += mass * v;
-        l += mass * torque(a, v)[0];
-        inertia += mass * dot(a, a);
-      }
-      linear += dot(p, p) / (mass * static_cast<double>(body.members.size())) / D;
-      angular += l * l / inertia;
-      samples += 1.0;
-    }
-  }
-  EXPECT_NEAR(linear / samples, 1.0 - 3.0 / 42.0, 0.08);
-  EXPECT_NEAR(angular / samples, 1.0, 0.08);
 }
 
 }  // namespace
