@@ -181,20 +181,20 @@ TYPED_TEST(ShearTest, PairListFindsAllImagesAtAnyOffset) {
   constexpr int D = TypeParam::D;
   std::int64_t pairs = 0;
   // From two cells per direction, through odd ones, to boxes of unlike edges; with and without a skin.
-  for (const double edge : {2.0, 2.5, 3.4, 4.7, 6.1})
+  for (const double edge : {2.0, 2.5, 3.4, 4.7})
     for (const double skin : {0.0, 0.35})
       for_all_directions<D>([&](const Shear& shear) {
         Vec<D> size = support::uniform_vec<D>(edge);
         size[shear.flow] += 0.6;
         Box<D> box = sheared_box<D>(size, shear, 0.0);
         PairList<D> list(box, 1.0, skin);
-        for (std::uint64_t k = 0; k < 7; ++k)
-          compare_with_all_images(box.at(0.05 + 0.173 * static_cast<double>(k)), list, 1.0 + skin,
-                                  k, 60, pairs);
+        for (std::uint64_t k = 0; k < 4; ++k)
+          compare_with_all_images(box.at(0.05 + 0.273 * static_cast<double>(k)), list, 1.0 + skin,
+                                  k, 40, pairs);
         // Offsets of whole cells, and of half a box.
         for (const double offset : {0.0, size[shear.flow] / 3.0, 0.5 * size[shear.flow], -1.0}) {
           box.offset = offset;
-          compare_with_all_images(box, list, 1.0 + skin, 77, 60, pairs);
+          compare_with_all_images(box, list, 1.0 + skin, 77, 40, pairs);
         }
       });
   EXPECT_GT(pairs, 10000);
