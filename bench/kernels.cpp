@@ -126,6 +126,14 @@ void Solve(benchmark::State& state) {
   per_particle(state);
 }
 
+/// Set-up of a solver made anew: its grid's operator, its memory.
+template <int D>
+void FirstBind(benchmark::State& state) {
+  const Fluid<D>& fluid = fluid_of<D>(state.range(0));
+  for (auto _ : state) make_solver({.name = "pcg"})->bind(fluid.resistance);
+  per_particle(state);
+}
+
 BENCHMARK(PairSearch<2>)->Arg(540)->Arg(10000)->Arg(100000);
 BENCHMARK(PairSearch<3>)->Arg(540)->Arg(10000)->Arg(100000);
 BENCHMARK(Edges<2>)->Arg(540)->Arg(10000)->Arg(100000);
@@ -140,6 +148,8 @@ BENCHMARK(Apply<2>)->Arg(540)->Arg(10000);
 BENCHMARK(Apply<3>)->Arg(540)->Arg(10000);
 BENCHMARK(Solve<2>)->Arg(540)->Arg(10000);
 BENCHMARK(Solve<3>)->Arg(540)->Arg(10000);
+BENCHMARK(FirstBind<2>)->Arg(10000);
+BENCHMARK(FirstBind<3>)->Arg(10000);
 
 }  // namespace
 }  // namespace odpd
