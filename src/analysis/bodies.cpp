@@ -35,8 +35,6 @@ double shell(double a, double b) {
   return unit_ball_volume<D> * (std::pow(b, D) - std::pow(a, D));
 }
 
-constexpr double excluded = 1e-3;  // g below this is none
-
 }  // namespace
 
 template <int D>
@@ -192,9 +190,16 @@ std::vector<std::string> Bodies<D>::series_columns() const {
 
 template <int D>
 double Bodies<D>::exclusion_radius(std::size_t kind) const {
-  for (std::size_t k = 0; k < bins_; ++k)
-    if (density_.mean(kind * bins_ + k) >= excluded) return bodies_.bin * static_cast<double>(k);
-  return std::nan("");
+  // What the ball holds beyond its share, at the bins' edges; the crossing farthest out counts.
+  double radius = std::nan(""), beyond = 0.0;
+  for (std::size_t k = 0; k < bins_; ++k) {
+    const double r = bodies_.bin * static_cast<double>(k);
+    const double more =
+        (density_.mean(kind * bins_ + k) - bodies_.empty) * shell<D>(r, r + bodies_.bin);
+    if (beyond <= 0.0 && beyond + more > 0.0) radius = r - bodies_.bin * beyond / more;
+    beyond += more;
+  }
+  return radius;
 }
 
 template <int D>

@@ -228,6 +228,8 @@ std::unique_ptr<Observer<D>> make_bodies(const Config& entry, ObserverSettings s
                fmt::format("must be at most half the shortest periodic edge of the box, {}", most));
   b.bin = entry.positive("bin", b.bin);
   if (b.bin > b.r_max) entry.fail("bin", "must be less than r_max");
+  b.empty = entry.positive("empty", b.empty);
+  if (b.empty >= 1.0) entry.fail("empty", "must be below 1, the mean density of the fluid");
   return std::make_unique<Bodies<D>>(std::move(settings), b, scene, clock.dt, in_time);
 }
 

@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "odpd/analysis/bodies.h"
 #include "odpd/analysis/density_residual.h"
 #include "odpd/analysis/least_squares.h"
 #include "odpd/analysis/msd.h"
@@ -352,6 +353,41 @@ TEST(DensityResidual, NoiseIsToldFromUnevenness) {
     EXPECT_NEAR(records::mean(results, "n.excess"), uneven, stretch > 0.0 ? 0.02 * uneven : noise);
     EXPECT_LT(records::mean(results, "n.excess"), records::mean(results, "n.thesis"));
   }
+}
+
+// Fluid fills all but a disk or sphere of 0.6 around an obstacle; once in 200 samples a particle visits its inside, which trips
+// the density of the bins there but not that of the whole ball.
+TYPED_TEST(StructureTest, ExclusionDoesNotTellASingleVisit) {
+  constexpr int D = TypeParam::D;
+  constexpr std::size_t n = 500, samples = 200;
+  const Vec<D> centre = support::uniform_vec<D>(2.0);
+  const auto outside = [&](std::uint64_t seed) {
+    auto r = support::random_points<D>(Vec<D>{}, support::uniform_vec<D>(4.0), 2 * n, seed);
+    std::erase_if(r, [&](const Vec<D>& x) { return norm(x - centre) < 0.6; });
+    r.resize(n);
+    return r;
+  };
+  auto s = records::periodic<D>(4.0, outside(0));
+  odpd::BodySettings<D> point;
+  point.shape = {Vec<D>{}};
+  point.motion = odpd::BodyMotion::fixed;
+  point.positions = {centre};
+  s.bodies = {point};
+  const Scene<D> scene(s);
+  odpd::Bodies<D> bodies({.kind = "bodies", .name = "b"}, {.msd = {}, .r_max = 1.5}, scene, 0.01,
+                         false);
+  StepRecord<D> record = records::record<D>(scene);
+  record.start.arms.resize(record.start.position.size());
+  for (std::size_t t = 0; t < samples; ++t) {
+    auto r = outside(t);
+    if (t == 100) r[0] = centre + Vec<D>{{0.1}};
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < record.start.position.size(); ++i)
+      if (scene.particles().is_free(i)) record.start.position[i] = r[next++];
+    bodies.measure(Clock{}, scene.particles(), record);
+  }
+  const auto results = records::results(bodies);
+  EXPECT_NEAR(records::mean(results, "b.body.exclusion_radius"), 0.6, 0.005);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 //   velocity, angular_velocity   of the motion over the step
 //   diffusion, rotational_diffusion   from mean-square displacements of centre and orientation (free bodies)
 //   g(q)              density of the fluid at distance q from the centre, relative to its mean (Phan-Thien et al. 2016,
-//                     eq. 48), and the exclusion radius: where it first exceeds 0.001
+//                     eq. 48), and the exclusion radius: of the largest ball with less than `empty` of the mean density
 //
 // and the mean velocity of the fluid particles. The orientation is followed by adding up the rotation from sample to sample,
 // so it must turn by less than half a turn between two.
@@ -16,9 +16,10 @@
 namespace odpd {
 
 struct BodiesSettings {
-  MsdSettings msd;     ///< lags; the directions are those of the centre's displacements
-  double r_max = 2.0;  ///< of g(q) (length)
-  double bin = 0.01;   ///< its bins (length)
+  MsdSettings msd;      ///< lags; the directions are those of the centre's displacements
+  double r_max = 2.0;   ///< of g(q) (length)
+  double bin = 0.01;    ///< its bins (length)
+  double empty = 1e-3;  ///< density of a ball without fluid, relative to the mean
 };
 
 template <int D>
