@@ -57,6 +57,14 @@ BlowUpWatch<D>::BlowUpWatch(const Scene<D>& scene, double multiple)
   double fastest_squared = 0.0;
   for (const auto& wall : scene.settings().walls)
     fastest_squared = std::max(fastest_squared, dot(wall.velocity, wall.velocity));
+  for (const auto& body : scene.settings().bodies) {
+    const double speed = norm(body.velocity.velocity) + norm(body.velocity.angular) * body.radius();
+    fastest_squared = std::max(fastest_squared, speed * speed);
+    const double lever = std::max(body.radius(), scene.model().cutoff());
+    const double load = norm(body.load.force) + norm(body.load.torque) / lever;
+    load_ += static_cast<double>(body.bodies()) * load;
+    load_squared_ += static_cast<double>(body.bodies()) * load * load;
+  }
   if (fastest_squared > 0.0)
     flow_slip_ = 2.0 * std::sqrt(fastest_squared * scene.model().cutoff() / fluid_depth());
   // As between walls that move with half the sliding velocity each.
@@ -70,8 +78,10 @@ double BlowUpWatch<D>::fluid_depth() const {
   double depth = 0.0;
   for (const auto& wall : scene_.settings().walls)
     depth = std::max(depth, scene_.fluid_high()[wall.axis] - scene_.fluid_low()[wall.axis]);
-  if (depth > 0.0 || !scene_.settings().force_varies()) return depth;
-  // Without walls a force that varies drives streams as wide as the box or less.
+  const bool moved = std::any_of(scene_.settings().bodies.begin(), scene_.settings().bodies.end(),
+                                 [](const auto& body) { return body.motion == BodyMotion::given; });
+  if (depth > 0.0 || !(scene_.settings().force_varies() || moved)) return depth;
+  // Without walls a force that varies, or a moving body, drives streams as wide as the box or less.
   for (int c = 0; c < D; ++c) depth = std::max(depth, scene_.box().size[c]);
   return depth;
 }
@@ -128,7 +138,8 @@ std::string BlowUpWatch<D>::judge_temperatures(const Stage<D>& stage, const Pair
       contacts * gamma * flow_slip_ +
       s.largest_force() * fluid_depth() * std::pow(n / scene_.fluid_volume(), 1.0 / D);
   const double force = fixed_sum(force_squared), curvature = fixed_sum(laplacian);
-  const double scale = kT * (std::max(curvature, 0.0) + 3.0 * std::sqrt(squares)) + n * drag * drag;
+  const double scale =
+      kT * (std::max(curvature, 0.0) + 3.0 * std::sqrt(squares)) + n * drag * drag + load_squared_;
   const bool sound = force <= multiple_ * scale;
   if (!sound && ordered_)
     return fmt::format(
@@ -158,7 +169,8 @@ std::string BlowUpWatch<D>::judge(const Stage<D>& stage, double dt) {
     for (const DpdParameters& p : s.pairs)
       start_energy_ = std::max(start_energy_, random_energy<D>(p, n / scene_.fluid_volume()));
   }
-  const double bound = multiple_ * (start_energy_ + D * kT + s.largest_force() * fluid_depth());
+  const double bound = multiple_ * (start_energy_ + D * kT + s.largest_force() * fluid_depth() +
+                                    load_ * scene_.model().cutoff() / n);
   // Without any energy in the scene there is no scale to judge it by.
   if (bound > 0.0 && energy > bound)
     return fmt::format(

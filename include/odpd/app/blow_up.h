@@ -1,12 +1,13 @@
 #pragma once
 // When a run has blown up, why, and what to do. With b = run.blow_up, kT the largest of the scene, and u the slip between
-// neighbours that the drive can cause (u^2 = (2 U)^2 r_c/H for walls of speed U a gap H apart), a state is judged bad when
+// neighbours that the drive can cause (u^2 = (2 U)^2 r_c/H for walls of speed U a gap H apart, or bodies of given speed in a box
+// H long), and F_b the forces on bodies (a torque counts as one at the body's edge), a state is judged bad when
 //
-//   energy per particle      U/N > b (U_0 + d kT + |f| H),  U_0 the larger of that at the start and of a random
-//                            arrangement of the same density, f the body force
+//   energy per particle      U/N > b (U_0 + d kT + |f| H + sum F_b r_c/N),  U_0 the larger of that at the start and of a
+//                            random arrangement of the same density, f the body force
 //   kinetic temperature      of pairs within the cutoff, m <|v_i - v_j|^2>/(2 d) > b (kT + U_0 + m u^2)(1 + 10/n), with n degrees
 //                            of freedom: a flow common to both does not count, nor does a small system's scatter
-//   configurational          sum |F_i|^2 > b (kT (L + 3 S) + N F_u^2), L = sum lap_i U, S^2 = sum (lap_i U)^2, F_u the
+//   configurational          sum |F_i|^2 > b (kT (L + 3 S) + N F_u^2 + sum F_b^2), L = sum lap_i U, S^2 = sum (lap_i U)^2, F_u the
 //   temperature              drag that the drive can cause on a particle; at equilibrium <sum |F|^2> = kT <L>, and where
 //                            particles lie at random L vanishes (soft repulsion: their energy is hardly raised then).
 //                            From the first state that passes on, as an unrelaxed start does not; kT > 0 and a > 0 only
@@ -66,9 +67,10 @@ class BlowUpWatch {
 
   const Scene<D>& scene_;
   double multiple_;
-  double flow_slip_ = 0.0;      // u
-  double start_energy_ = -1.0;  // per particle; negative before the first judgement
-  bool ordered_ = false;        // some state had a sound configurational temperature
+  double flow_slip_ = 0.0;                  // u
+  double load_ = 0.0, load_squared_ = 0.0;  // sums of F_b and F_b^2
+  double start_energy_ = -1.0;              // per particle; negative before the first judgement
+  bool ordered_ = false;                    // some state had a sound configurational temperature
 };
 
 }  // namespace odpd
