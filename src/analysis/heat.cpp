@@ -56,7 +56,7 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
   add_sliding_friction(network, force);
   double walls = 0.0, driven = 0.0, shear = 0.0, rate = 0.0;
   for (std::size_t k = 0; k < network.slip_0.size(); ++k) {
-    const Vec<D> pair = network.f_c[k] * network.e[k];
+    const Vec<D> pair = network.push(k);
     const Vec<D> drag = friction_of(network, k, network.slip(k, stage.velocity));
     rate -= dot(pair, network.slip_0[k]);
     shear -= dot(pair + drag, network.slip_0[k]);

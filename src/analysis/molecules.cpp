@@ -9,7 +9,7 @@ namespace odpd {
 
 namespace {
 
-constexpr std::size_t shape_columns = 3;
+constexpr std::size_t shape_columns = 4;
 
 template <int D>
 std::vector<std::array<std::size_t, 2>> bond_tree(const MoleculeSettings<D>& m) {
@@ -82,6 +82,9 @@ std::vector<double> MoleculeStatistics<D>::shapes(const Particles<D>& particles,
     for (const Vec<D>& r : beads) centre += bead * r;
     for (const Vec<D>& r : beads)
       sum[2] += bead / population_[m.kind] * dot(r - centre, r - centre);
+    if (settings.site_H > 0.0)
+      sum[3] += bead / population_[m.kind] *
+                BalancedFrame<D>({.sites = settings.shape}, beads).distance_squared();
   }
   return sums;
 }
@@ -110,10 +113,21 @@ void MoleculeStatistics<D>::follow(const Particles<D>& particles) {
 template <int D>
 std::vector<std::string> MoleculeStatistics<D>::series_columns() const {
   std::vector<std::string> columns;
-  for (const auto& m : scene_.settings().molecules)
+  for (const auto& m : scene_.settings().molecules) {
     for (const char* what : {"bond_length", "bond_length_squared", "radius_of_gyration_squared"})
       columns.push_back(fmt::format("{}_{}", what, m.name));
+    if (m.site_H > 0.0) columns.push_back(fmt::format("site_distance_squared_{}", m.name));
+  }
   return columns;
+}
+
+template <int D>
+std::vector<double> MoleculeStatistics<D>::series_row() const {
+  std::vector<double> row;
+  for (std::size_t k = 0; k < newest_.size(); ++k)
+    if (k % shape_columns < 3 || scene_.settings().molecules[k / shape_columns].site_H > 0.0)
+      row.push_back(newest_[k]);
+  return row;
 }
 
 template <int D>
@@ -136,6 +150,9 @@ void MoleculeStatistics<D>::add_results(Results& results) const {
     }
     results.scalars.push_back({prefix + "radius_of_gyration_squared", shape_.mean(at + 2),
                                shape_.standard_error(at + 2)});
+    if (m.site_H > 0.0)
+      results.scalars.push_back(
+          {prefix + "site_distance_squared", shape_.mean(at + 3), shape_.standard_error(at + 3)});
     if (!in_time_) continue;
     const bool any = displacements_.windows() > 0;
     const BlockAverage& diffusion = displacements_.diffusion();

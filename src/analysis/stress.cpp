@@ -112,8 +112,8 @@ void add_stage_stress(const StressGrid<D>& grid, const Places<D>& places, const 
   const auto edge = [&](std::size_t k, double* into) {
     const Vec<D> r = places.at(static_cast<std::size_t>(network.i[k]));
     const Vec<D> arm = places.between(network, k);
-    if (network.f_c[k] != 0.0)
-      grid.add_line(conservative_part, r, arm, arm, (weight * network.f_c[k]) * network.e[k], into);
+    const Vec<D> push = network.push(k);
+    if (push != Vec<D>{}) grid.add_line(conservative_part, r, arm, arm, weight * push, into);
     grid.add_line(friction_part, r, arm, arm,
                   weight * friction_of<D>(network, k, network.slip(k, stage.velocity)), into);
   };

@@ -65,8 +65,7 @@ void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepR
   for (std::size_t k = 0; k < virial.size(); ++k) {
     const bool known = particles.is_known(static_cast<std::size_t>(network.i[k])) ||
                        particles.is_known(static_cast<std::size_t>(network.j[k]));
-    virial[k] =
-        (known ? 0.5 : 1.0) * dot(places.between(network, k), network.e[k]) * network.f_c[k];
+    virial[k] = (known ? 0.5 : 1.0) * dot(places.between(network, k), network.push(k));
   }
   const auto n = static_cast<double>(particles.free_count());
   const auto bodies =

@@ -86,6 +86,10 @@ template <int D>
 void add_conservative_forces(const PairNetwork<D>& network, std::vector<Vec<D>>& force) {
   add_edges(
       network, true, [&](std::size_t k) { return network.f_c[k] * network.e[k]; }, force);
+  if (network.beyond.empty()) return;
+  const auto first_bond = static_cast<std::size_t>(network.pairs());
+  add_bonds(
+      network, true, [&](std::size_t k) { return network.beyond[k - first_bond].force; }, force);
 }
 
 template <int D>
@@ -157,6 +161,11 @@ void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian
                                       : 0.0;
   };
   add_edges(network, false, share, laplacian);
+  if (network.beyond.empty()) return;
+  const auto first_bond = static_cast<std::size_t>(network.pairs());
+  add_bonds(
+      network, false, [&](std::size_t k) { return network.beyond[k - first_bond].curvature; },
+      laplacian);
 }
 
 #define ODPD_INSTANTIATE(D)                                                                      \

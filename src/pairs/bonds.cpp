@@ -45,6 +45,7 @@ double half_periodic(const Box<D>& box) {
 
 PairTerms bond_terms(const BondParameters& p, double r) {
   PairTerms t;
+  if (p.law == BondLaw::sites) return t;
   const double stretch = r - p.r_0;
   if (p.law == BondLaw::harmonic) {
     t.u = 0.5 * p.H * stretch * stretch;
@@ -64,8 +65,9 @@ PairTerms bond_terms(const BondParameters& p, double r) {
 }
 
 template <int D>
-BondedModel<D>::BondedModel(std::unique_ptr<PairModel<D>> pairs, std::vector<Bond> bonds)
-    : pairs_(std::move(pairs)), bonds_(std::move(bonds)) {
+BondedModel<D>::BondedModel(std::unique_ptr<PairModel<D>> pairs, std::vector<Bond> bonds,
+                            std::vector<SiteFrame<D>> frames)
+    : pairs_(std::move(pairs)), bonds_(std::move(bonds)), frames_(std::move(frames)) {
   std::set<std::pair<std::int64_t, std::int64_t>> seen;
   std::int64_t last = -1;
   for (const Bond& bond : bonds_) {
@@ -114,6 +116,24 @@ void BondedModel<D>::write_edges(const PairList<D>& list, const Box<D>& box,
     write_bond(bonds_[k], half_box, box, positions, particles, static_cast<std::size_t>(pairs) + k,
                network);
   network.index_bonds(static_cast<std::int64_t>(bonds_.size()));
+  if (frames_.empty()) return;
+  network.beyond.assign(bonds_.size(), {});
+  for (const SiteFrame<D>& frame : frames_)
+    write_frame<D>(frame, places_of(frame, box, positions, particles),
+                   static_cast<std::size_t>(pairs) + frame.bond, network);
+}
+
+// Each next to the first of them: bonds are shorter than half the box.
+template <int D>
+std::vector<Vec<D>> BondedModel<D>::places_of(const SiteFrame<D>& frame, const Box<D>& box,
+                                              std::span<const Vec<D>> positions,
+                                              const Particles<D>& particles) const {
+  std::vector<Vec<D>> places;
+  const Vec<D> first = positions[place_of(frame.first, particles)];
+  for (std::size_t k = 0; k < frame.sites.size(); ++k)
+    places.push_back(box.separation(
+        positions[place_of(frame.first + static_cast<std::int64_t>(k), particles)], first));
+  return places;
 }
 
 template <int D>
@@ -186,7 +206,28 @@ double BondedModel<D>::bonded_energy(std::size_t i, const Vec<D>& r, const Box<D
     if (bond.p.exclude != BondExclusion::none)
       energy -= pairs_->pair(length, Site{particles.species[i]}, Site{particles.species[j]}).u;
   }
-  return energy;
+  return energy + frame_energy(particles.id[i], r, box, particles);
+}
+
+// Of the frame of particle `id`, were that particle at r.
+template <int D>
+double BondedModel<D>::frame_energy(std::int64_t id, const Vec<D>& r, const Box<D>& box,
+                                    const Particles<D>& particles) const {
+  const auto after = std::upper_bound(
+      frames_.begin(), frames_.end(), id,
+      [](std::int64_t wanted, const SiteFrame<D>& frame) { return wanted < frame.first; });
+  if (after == frames_.begin()) return 0.0;
+  const SiteFrame<D>& frame = *(after - 1);
+  const auto at = static_cast<std::size_t>(id - frame.first);
+  if (at >= frame.sites.size()) return 0.0;
+  std::vector<Vec<D>> places = places_of(frame, box, particles.position, particles);
+  if (at > 0) {
+    places[at] = box.separation(r, particles.position[place_of(frame.first, particles)]);
+  } else {
+    const Vec<D> shift = box.separation(r, particles.position[place_of(id, particles)]);
+    for (std::size_t k = 1; k < places.size(); ++k) places[k] -= shift;
+  }
+  return 0.5 * frame.H * BalancedFrame<D>(frame, places).distance_squared();
 }
 
 template class BondedModel<2>;

@@ -12,6 +12,7 @@ template <int D>
 void PairNetwork<D>::resize(std::int64_t edges) {
   const auto n = static_cast<std::size_t>(edges);
   bonds = 0;
+  beyond.clear();
   // Some room more: the number of edges changes by little from one configuration to the next.
   const auto resize_one = [&](auto& column) {
     if (column.capacity() < n) column.reserve(n + n / 32);
@@ -98,6 +99,7 @@ std::int64_t PairNetwork<D>::bytes() const {
   std::int64_t columns = 0;
   for (const Column* column : {&u, &k_c, &zeta_perp, &kT}) columns += column->bytes();
   return columns + static_cast<std::int64_t>(i.size() * per_edge + slip_0.size() * sizeof(Vec<D>) +
+                                             beyond.size() * sizeof(Beyond) +
                                              (edge.size() + scratch.size() + next.size()) *
                                                  sizeof(std::int32_t) +
                                              (start.size() + first.size()) * sizeof(std::int64_t));

@@ -16,24 +16,22 @@ void find_arms(const Box<D>& box, std::span<const Vec<D>> positions, std::span<V
 }
 
 template <int D>
-Vec<D> angular_velocity(std::span<const Vec<D>> arms, const Vec<D>& l) {
+std::optional<Vec<D>> turn_under(std::span<const Vec<D>> arms, std::span<const Vec<D>> ends,
+                                 const Vec<D>& l) {
   constexpr int n = rotation_components<D>;
   std::array<Vec<D>, D> m{};  // rows of sum X^T X
   double size = 0.0;
-  for (const Vec<D>& a : arms) {
-    size += dot(a, a);
+  for (std::size_t k = 0; k < arms.size(); ++k) {
+    size += dot(arms[k], ends[k]);
     for (int c = 0; c < n; ++c) {
       Vec<D> unit{};
       unit[c] = 1.0;
-      m[static_cast<std::size_t>(c)] += torque(a, swing(unit, a));
+      m[static_cast<std::size_t>(c)] += torque(ends[k], swing(unit, arms[k]));
     }
   }
   Vec<D> w = l;
   for (std::size_t p = 0; p < static_cast<std::size_t>(n); ++p) {
-    if (!(m[p].x[p] > 1e-12 * size))
-      throw ConfigError(
-          "a rigid body has its constituents on a line or in one point: it has no moment of "
-          "inertia about some axis");
+    if (!(m[p].x[p] > 1e-12 * size)) return std::nullopt;
     for (std::size_t row = p + 1; row < static_cast<std::size_t>(n); ++row) {
       const double factor = m[row].x[p] / m[p].x[p];
       m[row] -= factor * m[p];
@@ -49,6 +47,14 @@ Vec<D> angular_velocity(std::span<const Vec<D>> arms, const Vec<D>& l) {
 }
 
 template <int D>
+Vec<D> angular_velocity(std::span<const Vec<D>> arms, const Vec<D>& l) {
+  if (const auto w = turn_under(arms, arms, l)) return *w;
+  throw ConfigError(
+      "a rigid body has its constituents on a line or in one point: it has no moment of "
+      "inertia about some axis");
+}
+
+template <int D>
 RigidMotion<D> rigid_motion(std::span<const Vec<D>> arms, std::span<const Vec<D>> velocities) {
   RigidMotion<D> motion;
   Vec<D> l{};
@@ -61,9 +67,11 @@ RigidMotion<D> rigid_motion(std::span<const Vec<D>> arms, std::span<const Vec<D>
   return motion;
 }
 
-#define ODPD_INSTANTIATE(D)                                                              \
-  template void find_arms<D>(const Box<D>&, std::span<const Vec<D>>, std::span<Vec<D>>); \
-  template Vec<D> angular_velocity<D>(std::span<const Vec<D>>, const Vec<D>&);           \
+#define ODPD_INSTANTIATE(D)                                                                      \
+  template void find_arms<D>(const Box<D>&, std::span<const Vec<D>>, std::span<Vec<D>>);         \
+  template Vec<D> angular_velocity<D>(std::span<const Vec<D>>, const Vec<D>&);                   \
+  template std::optional<Vec<D>> turn_under<D>(std::span<const Vec<D>>, std::span<const Vec<D>>, \
+                                               const Vec<D>&);                                   \
   template RigidMotion<D> rigid_motion<D>(std::span<const Vec<D>>, std::span<const Vec<D>>);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)

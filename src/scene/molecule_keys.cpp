@@ -4,11 +4,18 @@
 #include <cmath>
 
 #include "odpd/core/error.h"
+#include "odpd/particles/rigid_body.h"
 #include "odpd/scene/scene_settings.h"
 
 namespace odpd {
 
 namespace {
+
+BondExclusion read_exclusion(const Config& entry) {
+  const std::string exclude = entry.choice("exclude", {"none", "repulsion", "all"}, "none");
+  if (exclude == "none") return BondExclusion::none;
+  return exclude == "repulsion" ? BondExclusion::repulsion : BondExclusion::all;
+}
 
 template <int D>
 Vec<D> bead_place(const Config& entry) {
@@ -87,11 +94,38 @@ void read_listed_bonds(const Config& entry, MoleculeSettings<D>& m) {
   }
 }
 
+// Springs to the sites of a rigid frame that has the shape; every pair of beads gets an edge of them.
+template <int D>
+void read_sites(const Config& entry, MoleculeSettings<D>& m) {
+  if (m.walk > 0.0)
+    entry.fail("bonds",
+               "\"sites\" stand where the shape has its beads, and a walk has no shape: use chain, "
+               "simplex or points");
+  for (const char* key : {"law", "r_0", "r_max"})
+    if (entry.has(key))
+      entry.fail(key,
+                 "leave it out: with bonds = \"sites\" a spring has H alone, and no force "
+                 "where a bead is on its site");
+  if (!turn_under<D>(m.shape, m.shape, Vec<D>{}))
+    entry.fail("shape",
+               "with bonds = \"sites\" the sites must not lie in one point, nor on a line in 3D: "
+               "their frame could turn freely");
+  m.site_H = entry.positive("H");
+  BondParameters p{.law = BondLaw::sites, .H = m.site_H, .exclude = read_exclusion(entry)};
+  for (std::int64_t i = 0; i < m.beads(); ++i)
+    for (std::int64_t j = i + 1; j < m.beads(); ++j) {
+      p.r_0 = span_of(m, i, j);
+      m.bonds.push_back({i, j, p});
+    }
+}
+
 template <int D>
 void read_bonds(const Config& entry, bool chain, MoleculeSettings<D>& m) {
   if (m.beads() < 2) return;
   if (entry.has("bond")) return read_listed_bonds(entry, m);
-  const std::string which = entry.choice("bonds", {"chain", "all"}, chain ? "chain" : "all");
+  const std::string which =
+      entry.choice("bonds", {"chain", "all", "sites"}, chain ? "chain" : "all");
+  if (which == "sites") return read_sites(entry, m);
   for (std::int64_t i = 0; i < m.beads(); ++i)
     for (std::int64_t j = i + 1; j < m.beads() && (which == "all" || j == i + 1); ++j)
       m.bonds.push_back({i, j, read_bond(entry, span_of(m, i, j))});
@@ -173,10 +207,7 @@ BondParameters read_bond(const Config& entry, double length, bool open) {
   // The default differs from bond to bond: it is not one of the case.
   p.r_0 = entry.has("r_0") ? entry.non_negative("r_0") : fene ? 0.0 : length;
   if (fene && (!open || entry.has("r_max"))) p.r_max = entry.positive("r_max");
-  const std::string exclude = entry.choice("exclude", {"none", "repulsion", "all"}, "none");
-  p.exclude = exclude == "none"        ? BondExclusion::none
-              : exclude == "repulsion" ? BondExclusion::repulsion
-                                       : BondExclusion::all;
+  p.exclude = read_exclusion(entry);
   return p;
 }
 

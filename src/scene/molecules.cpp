@@ -116,6 +116,19 @@ std::vector<Bond> bonds_of(const std::vector<MoleculeSettings<D>>& settings,
 }
 
 template <int D>
+std::vector<SiteFrame<D>> frames_of(const std::vector<MoleculeSettings<D>>& settings,
+                                    const std::vector<Molecule>& molecules) {
+  std::vector<SiteFrame<D>> frames;
+  std::size_t bond = 0;
+  for (const Molecule& m : molecules) {
+    const MoleculeSettings<D>& kind = settings[m.kind];
+    if (kind.site_H > 0.0) frames.push_back({m.first, bond, kind.shape, kind.site_H});
+    bond += kind.bonds.size();
+  }
+  return frames;
+}
+
+template <int D>
 void place_molecules(const std::vector<MoleculeSettings<D>>& settings, const Box<D>& box,
                      const Vec<D>& low, const Vec<D>& high, std::uint64_t seed,
                      Particles<D>& particles) {
@@ -179,6 +192,8 @@ void join_images(const std::vector<Bond>& bonds, const Box<D>& box, Particles<D>
                                                    std::int64_t);                               \
   template std::vector<Bond> bonds_of<D>(const std::vector<MoleculeSettings<D>>&,               \
                                          const std::vector<Molecule>&);                         \
+  template std::vector<SiteFrame<D>> frames_of<D>(const std::vector<MoleculeSettings<D>>&,      \
+                                                  const std::vector<Molecule>&);                \
   template void place_molecules<D>(const std::vector<MoleculeSettings<D>>&, const Box<D>&,      \
                                    const Vec<D>&, const Vec<D>&, std::uint64_t, Particles<D>&); \
   template void join_images<D>(const std::vector<Bond>&, const Box<D>&, Particles<D>&);

@@ -39,7 +39,9 @@ void Scene<D>::join_molecules() {
     bond.j += first;
     bonds_.push_back(bond);
   }
-  if (!bonds_.empty()) model_ = std::make_unique<BondedModel<D>>(std::move(model_), bonds_);
+  if (!bonds_.empty())
+    model_ = std::make_unique<BondedModel<D>>(std::move(model_), bonds_,
+                                              frames_of(settings_.molecules, molecules_));
 }
 
 template <int D>

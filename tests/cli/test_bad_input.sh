@@ -315,6 +315,13 @@ expect_error 1 molecule exclude=some -- exclude
 expect_error 1 molecule spacing=50.0 -- 'half the box'
 expect_error 1 molecule 'bond=[{between=[0, 3]}]' -- between 'from 0 to 2'
 expect_error 1 molecule 'bond=[{between=[0, 1]}]' -- 'beads 0 and 2'
+expect_exit 0 molecule bonds=sites --out tied
+expect_error 1 molecule bonds=sites --set molecule.0.law=harmonic -- law sites
+expect_error 1 molecule bonds=sites --set molecule.0.r_0=0.1 -- r_0 sites
+expect_error 1 molecule bonds=sites --set molecule.0.shape=walk -- bonds 'a walk has no shape'
+expect_error 1 molecule bonds=sites --set molecule.0.H=-1.0 -- H positive
+expect_error 1 molecule bonds=sites --set molecule.0.shape=points --set 'molecule.0.points=[{at=[0.0, 0.0]}, {at=[0.0, 0.0]}]' -- shape 'turn freely'
+expect_error 1 molecule bonds=frame -- bonds 'chain, all, sites'
 expect_error 1 molecule 'positions=[{at=[1.0, 1.0]}]' --set molecule.0.count=2 -- count positions
 expect_error 1 run box --set 'observe=[{kind="molecules"}]' -- kind '[[molecule]]'
 expect_error 1 run box --set bonds.file=bonds.csv -- bonds.file start.from

@@ -354,6 +354,15 @@ H = 1000.0
 exclude = "repulsion"
 count = 5
 
+[[molecule]]
+name = "tied"
+shape = "simplex"
+spacing = 0.25
+species = "bead"
+bonds = "sites"
+H = 1000.0
+count = 2
+
 [[observe]]
 kind = "molecules"
 window = 0.02
@@ -372,7 +381,7 @@ if have_h5py; then
 import h5py
 f = h5py.File('bonded-trapezoidal/trajectory.0000.h5')
 b = f['connectivity/bonds']
-assert b.shape == (30, 2) and f[b.attrs['particles_group']].name == '/particles/all', b"
+assert b.shape == (36, 2) and f[b.attrs['particles_group']].name == '/particles/all', b"
 fi
 # A trajectory starts the same molecules; bonds may also come from a file, from anywhere.
 last=$(find bonded-trapezoidal -name 'trajectory.*.h5' | sort | tail -n 1)

@@ -43,13 +43,29 @@ struct ShearedToy {
       particles.add(r, 0, 0);
     }
     std::vector<Bond> bonds;
-    for (std::int64_t i = 0; i < particles.size() && s.bonded; ++i)
-      for (std::int64_t j = 0; j < i; ++j)
+    std::vector<SiteFrame<D>> frames;
+    constexpr std::int64_t tied = 4;  // the first, to sites of a frame
+    if (s.bonded) {
+      frames.push_back({0, 0, support::random_vectors<D>(tied, 11), 100.0});
+      for (Vec<D>& b : frames[0].sites) b *= 0.2;
+      Vec<D> middle{};
+      for (const Vec<D>& b : frames[0].sites) middle += (1.0 / tied) * b;
+      for (std::int64_t i = 0; i < tied; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        frames[0].sites[k] -= middle;
+        if (i > 0) particles.position[k] = particles.position[0] + 1.2 * frames[0].sites[k];
+        box.wrap(particles.position[k]);
+        for (std::int64_t j = i + 1; j < tied; ++j)
+          bonds.push_back({i, j, {.law = BondLaw::sites, .H = 100.0}});
+      }
+    }
+    for (std::int64_t i = tied; i < particles.size() && s.bonded; ++i)
+      for (std::int64_t j = tied; j < i; ++j)
         if (norm(box.separation(particles.position[static_cast<std::size_t>(i)],
                                 particles.position[static_cast<std::size_t>(j)])) < 0.25)
           bonds.push_back({i, j, BondParameters{.H = 100.0, .r_0 = 0.3}});
     model = std::make_unique<BondedModel<D>>(std::make_unique<DpdModel<D>>(1, std::vector{s.fluid}),
-                                             bonds);
+                                             bonds, frames);
     DynamicsSettings settings;
     settings.mass = s.mass;
     settings.kT = s.fluid.kT;

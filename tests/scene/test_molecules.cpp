@@ -81,6 +81,32 @@ TEST(Molecules, AreTetrahedraAndChainsIn3D) {
   expect_molecules(Scene<3>(cases::settings<3>(std::string(cases::periodic) + colloids)), 180);
 }
 
+TEST(Molecules, OnSitesStartWithoutForce) {
+  auto settings = cases::settings<3>(std::string(cases::periodic) + colloids + R"(
+[[molecule]]
+name = "tied"
+shape = "points"
+points = [{ at = [0.0, 0.0, 0.0] }, { at = [0.3, 0.0, 0.0] }, { at = [0.0, 0.4, 0.0] }, { at = [0.1, 0.1, 0.3] }]
+species = "bead"
+bonds = "sites"
+H = 1000.0
+count = 3
+)");
+  settings.relax_sweeps = 0;
+  const Scene<3> scene(settings);
+  const auto& p = scene.particles();
+  odpd::PairList<3> list(scene.box(), scene.model().cutoff());
+  list.update(p.position);
+  odpd::PairNetwork<3> network;
+  scene.model().write_edges(list, scene.box(), p.position, p, network);
+  ASSERT_EQ(network.bonds, 7 * 6 + 24 + 18);
+  ASSERT_EQ(network.beyond.size(), 84u);
+  for (std::size_t k = network.i.size() - 18; k < network.i.size(); ++k) {
+    EXPECT_LT(network.u[k], 1e-20);
+    EXPECT_EQ(network.k_c[k], 1000.0 / 4.0);
+  }
+}
+
 // What a run wrote starts the same molecules; then the file's order is theirs.
 TEST(Molecules, AreTheLastOfAStartFile) {
   const auto text = std::string(cases::periodic) + colloids;

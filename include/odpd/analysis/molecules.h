@@ -3,7 +3,8 @@
 //
 //   R_g^2 = <1/n sum_b |r_b - R|^2>,   R = 1/n sum_b r_b
 //
-// and self-diffusion of the centre R from its mean-square displacement, as analysis/displacements.h has it.
+// where they are tied to sites (pairs/site_frame.h) the mean square distance of a bead from its site, and self-diffusion of the
+// centre R from its mean-square displacement, as analysis/displacements.h has it.
 #include <array>
 
 #include "odpd/analysis/displacements.h"
@@ -21,7 +22,7 @@ class MoleculeStatistics : public Observer<D> {
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   std::vector<std::string> series_columns() const override;
-  std::vector<double> series_row() const override { return newest_; }
+  std::vector<double> series_row() const override;
   void save(StateWriter& out) const override;
   void load(const StateReader& in) override;
 
@@ -35,7 +36,7 @@ class MoleculeStatistics : public Observer<D> {
   std::vector<double> population_;  // molecules of each kind
   // Of each kind: bonds that reach all beads from the first on, as (bead reached already, next bead).
   std::vector<std::vector<std::array<std::size_t, 2>>> tree_;
-  BlockAverage shape_;  // per kind: length, its square, R_g^2
+  BlockAverage shape_;  // per kind: length, its square, R_g^2, square distance from the sites
   Displacements displacements_;
   std::vector<double> newest_;
 };

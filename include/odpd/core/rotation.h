@@ -7,6 +7,7 @@
 //   Q <- exp(angle) Q         a finite rotation, exact: a unit complex number (2D) or quaternion (3D)
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "odpd/core/vec.h"
 
@@ -79,5 +80,10 @@ class Rotation<3> {
  private:
   std::array<double, numbers> q_{1.0, 0.0, 0.0, 0.0};
 };
+
+/// The rotation Q with the smallest sum_k |to_k - Q from_k|^2; at it sum_k torque(Q from_k, to_k) = 0. (3D: the quaternion of
+/// Horn 1987, J. Opt. Soc. Am. A 4, 629.) A function of its arguments alone; where several are as good, one of them.
+Rotation<2> best_rotation(std::span<const Vec<2>> from, std::span<const Vec<2>> to);
+Rotation<3> best_rotation(std::span<const Vec<3>> from, std::span<const Vec<3>> to);
 
 }  // namespace odpd

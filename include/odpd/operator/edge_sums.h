@@ -24,7 +24,7 @@ template <int D>
 void add_edge_forces(const PairNetwork<D>& network, std::span<const Vec<D>> edge_force,
                      std::vector<Vec<D>>& force);
 
-/// force[p] += conservative forces f_c e.
+/// force[p] += conservative forces, f_c e and what bonds have beyond.
 template <int D>
 void add_conservative_forces(const PairNetwork<D>& network, std::vector<Vec<D>>& force);
 
@@ -59,7 +59,7 @@ template <int D>
 void add_friction_blocks(const PairNetwork<D>& network,
                          std::vector<std::array<double, static_cast<std::size_t>(D* D)>>& blocks);
 
-/// laplacian[p] += sum over edges of k_c - (D - 1) f_c / r: the pair part of the Laplacian of U in r_p.
+/// laplacian[p] += sum over edges of k_c - (D - 1) f_c / r and what bonds have beyond: the pair part of the Laplacian of U in r_p.
 template <int D>
 void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian);
 

@@ -4,17 +4,19 @@
 //   harmonic  u = H/2 (r - r_0)^2                          f_c = -H (r - r_0)
 //   fene      u = -H/2 r_m^2 ln(1 - ((r - r_0)/r_m)^2)     f_c = -H (r - r_0)/(1 - ((r - r_0)/r_m)^2)
 //
-// (harmonic: Phan-Thien et al. 2016, eq. 50, 51). They stand behind the edges of the pairs in the network, so a bonded pair
+// (harmonic: Phan-Thien et al. 2016, eq. 50, 51), or all pairs of particles that are tied to the sites of one rigid frame, with
+// the terms of pairs/site_frame.h (law sites; their r_0 is the distance of the sites). They stand behind the edges of the pairs in the network, so a bonded pair
 // closer than the cutoff has two edges.
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "odpd/pairs/pair_model.h"
+#include "odpd/pairs/site_frame.h"
 
 namespace odpd {
 
-enum class BondLaw { harmonic, fene };
+enum class BondLaw { harmonic, fene, sites };
 /// What a bonded pair keeps of its interaction as a pair: all, friction and noise without the conservative force, nothing.
 enum class BondExclusion { none, repulsion, all };
 
@@ -31,7 +33,8 @@ struct Bond {
   BondParameters p{};
 };
 
-/// u, f_c and k_c of a bond of length r >= 0; u is infinite (f_c and k_c are zero) where fene does not reach.
+/// u, f_c and k_c of a bond of length r >= 0; u is infinite (f_c and k_c are zero) where fene does not reach. Zero for one of
+/// a frame, which only all its particles together have an energy with.
 PairTerms bond_terms(const BondParameters& p, double r);
 
 /// A pair model and the bonds of a scene.
@@ -40,14 +43,16 @@ class BondedModel : public PairModel<D> {
  public:
   /// kT of a bond's edge is that of its pair. Throws ConfigError: parameters out of range, a bond of a particle with itself,
   /// or two of one pair.
-  BondedModel(std::unique_ptr<PairModel<D>> pairs, std::vector<Bond> bonds);
+  /// Each of the frames has its bonds among them.
+  BondedModel(std::unique_ptr<PairModel<D>> pairs, std::vector<Bond> bonds,
+              std::vector<SiteFrame<D>> frames = {});
 
   double cutoff() const override { return pairs_->cutoff(); }
   PairTerms pair(double r, Site site_i, Site site_j) const override {
     return pairs_->pair(r, site_i, site_j);
   }
   /// Pair edges, then an edge per bond in the order of `bonds`. Throws BlowUpError for a bond out of reach or as long as half
-  /// the box.
+  /// the box, and where a frame may turn freely.
   void write_edges(const PairList<D>& list, const Box<D>& box, std::span<const Vec<D>> positions,
                    const Particles<D>& particles, PairNetwork<D>& network) const override;
   bool conservative() const override { return pairs_->conservative() || !bonds_.empty(); }
@@ -64,8 +69,15 @@ class BondedModel : public PairModel<D> {
                   std::span<const Vec<D>> positions, const Particles<D>& particles, std::size_t k,
                   PairNetwork<D>& network) const;
 
+  std::vector<Vec<D>> places_of(const SiteFrame<D>& frame, const Box<D>& box,
+                                std::span<const Vec<D>> positions,
+                                const Particles<D>& particles) const;
+  double frame_energy(std::int64_t id, const Vec<D>& r, const Box<D>& box,
+                      const Particles<D>& particles) const;
+
   std::unique_ptr<PairModel<D>> pairs_;
   std::vector<Bond> bonds_;
+  std::vector<SiteFrame<D>> frames_;  // by their first identities
   bool excludes_ = false;
   // Of each identity: bond_of_[start_[id]] .. are its bonds.
   std::vector<std::size_t> start_, bond_of_;

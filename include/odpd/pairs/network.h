@@ -35,6 +35,13 @@ struct PairNetwork {
   std::vector<double> f_c, zeta_par;
   Column u, k_c, zeta_perp, kT;
   bool transverse = false;  ///< some zeta_perp is not zero
+  /// What the energy of more than two particles adds to a bond (pairs/site_frame.h).
+  struct Beyond {
+    Vec<D> force{};  ///< on i, besides f_c e
+    double curvature =
+        0.0;  ///< to the Laplacian of U in either particle, besides k_c - (D - 1) f_c/r
+  };
+  std::vector<Beyond> beyond;  ///< of each bond; empty where all are of two particles
   /// Relative velocity of the images that interact: the sliding ones of Lees-Edwards (length/time). Empty without shear;
   /// written by Dynamics::evaluate for all edges, bonds too.
   std::vector<Vec<D>> slip_0;
@@ -52,6 +59,12 @@ struct PairNetwork {
     const auto b = static_cast<std::size_t>(start[static_cast<std::size_t>(particle)]);
     const auto n = static_cast<std::size_t>(start[static_cast<std::size_t>(particle) + 1]) - b;
     return std::span<const std::int32_t>(edge).subspan(b, n);
+  }
+  /// Conservative force on i of edge k.
+  Vec<D> push(std::size_t k) const {
+    const auto first_bond = static_cast<std::size_t>(pairs());
+    const Vec<D> along = f_c[k] * e[k];
+    return beyond.empty() || k < first_bond ? along : along + beyond[k - first_bond].force;
   }
   /// What friction sees on edge k where the particles have these velocities.
   Vec<D> slip(std::size_t k, std::span<const Vec<D>> velocity) const {

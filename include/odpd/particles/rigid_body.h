@@ -6,6 +6,7 @@
 // X the centre, Q the orientation, b_k fixed in the body. Positions are always made from X and Q, so that distances inside
 // it stay what they are.
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -67,6 +68,10 @@ void find_arms(const Box<D>& box, std::span<const Vec<D>> positions, std::span<V
 /// motion. Also the motion of momentum sum v and angular momentum sum torque(a, v), per mass of a point.
 template <int D>
 RigidMotion<D> rigid_motion(std::span<const Vec<D>> arms, std::span<const Vec<D>> velocities);
+/// w with sum_k X(e_k)^T X(a_k) w = l, a matrix that must be symmetric; none where it is singular.
+template <int D>
+std::optional<Vec<D>> turn_under(std::span<const Vec<D>> arms, std::span<const Vec<D>> ends,
+                                 const Vec<D>& l);
 /// w with sum_k X(a_k)^T X(a_k) w = l. Throws ConfigError for constituents on a line (3D) or in one point.
 template <int D>
 Vec<D> angular_velocity(std::span<const Vec<D>> arms, const Vec<D>& l);

@@ -25,6 +25,8 @@ struct MoleculeSettings {
   std::vector<std::string> species_names;  ///< one per bead; empty: the scene's first species
   std::vector<std::int32_t> species;       ///< one per bead
   std::vector<Link> bonds;
+  double site_H =
+      0.0;  ///< above 0: beads tied by such springs to a rigid frame of the shape (force/length)
   std::int64_t count = 1;         ///< at random places, where there are no `positions`
   std::vector<Vec<D>> positions;  ///< of the centres, the shape as it stands there (length)
 
@@ -55,6 +57,10 @@ std::vector<Molecule> list_molecules(const std::vector<MoleculeSettings<D>>& set
 template <int D>
 std::vector<Bond> bonds_of(const std::vector<MoleculeSettings<D>>& settings,
                            const std::vector<Molecule>& molecules);
+/// The frames of those that have one.
+template <int D>
+std::vector<SiteFrame<D>> frames_of(const std::vector<MoleculeSettings<D>>& settings,
+                                    const std::vector<Molecule>& molecules);
 /// Adds the particles of all molecules, random ones between `low` and `high` in bounded directions and off rigid bodies.
 /// Throws ConfigError where there is no room.
 template <int D>
