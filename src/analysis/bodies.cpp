@@ -84,16 +84,26 @@ void Bodies<D>::add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& nois
 template <int D>
 void Bodies<D>::add_motion(const Particles<D>& particles, const StepRecord<D>& record) {
   std::vector<Vec<D>> arms, velocities;
+  const Stage<D>& start = record.start;
+  // Velocity of the sheared flow at the place of i less an arm. Where a body is held, the flow is not known.
+  const auto flow = [&](std::size_t i, const Vec<D>& arm) {
+    if (!start.box.shear || scene_.settings().held()) return Vec<D>{};
+    Vec<D> u = start.box.flow_velocity(start.position[i] - arm);
+    u[start.box.shear->flow] += start.crossed[i] * start.box.sliding;
+    return u;
+  };
   for (std::size_t b = 0; b < kind_.size(); ++b) {
     arms.clear();
     velocities.clear();
     for (const std::size_t p : members_[b]) {
-      arms.push_back(record.start.arms[p]);
+      arms.push_back(start.arms[p]);
       velocities.push_back(record.v_mid[p]);
     }
     RigidMotion<D> motion;
     if (scene_.body_settings(b).motion != BodyMotion::fixed)
       motion = rigid_motion<D>(arms, velocities);
+    if (scene_.body_settings(b).motion == BodyMotion::free)
+      motion.velocity -= flow(members_[b][0], arms[0]);
     double* const out = &newest_[kind_[b] * width + D + turns];
     for (std::size_t c = 0; c < D; ++c) out[c] += share_[kind_[b]] * motion.velocity.x[c];
     for (std::size_t c = 0; c < turns; ++c) out[D + c] += share_[kind_[b]] * motion.angular.x[c];
@@ -102,7 +112,7 @@ void Bodies<D>::add_motion(const Particles<D>& particles, const StepRecord<D>& r
   for (std::size_t i = 0; i < record.v_mid.size(); ++i)
     if (particles.is_free(i))
       for (std::size_t c = 0; c < D; ++c)
-        newest_[names_.size() * width + c] += share * record.v_mid[i].x[c];
+        newest_[names_.size() * width + c] += share * (record.v_mid[i] - flow(i, {})).x[c];
 }
 
 template <int D>
@@ -137,10 +147,11 @@ void Bodies<D>::count_fluid(const Particles<D>& particles, const Stage<D>& stage
   const double per_particle = scene_.fluid_volume() / static_cast<double>(particles.free_count());
   std::vector<double> g(density_.width(), 0.0);
   for (std::size_t b = 0; b < kind_.size(); ++b) {
-    const Vec<D> centre = stage.position[members_[b][0]] - stage.arms[members_[b][0]];
+    Vec<D> centre = stage.position[members_[b][0]] - stage.arms[members_[b][0]];
+    stage.box.wrap(centre);
     for (std::size_t i = 0; i < stage.position.size(); ++i) {
       if (!particles.is_free(i)) continue;
-      const double q = norm(scene_.box().separation(stage.position[i], centre));
+      const double q = norm(stage.box.separation(stage.position[i], centre));
       const auto bin = static_cast<std::size_t>(q / bodies_.bin);
       if (bin < bins_)
         g[kind_[b] * bins_ + bin] += share_[kind_[b]] * per_particle /

@@ -149,8 +149,10 @@ void add_kinetic(const StressGrid<D>& grid, const Places<D>& places, const Scene
     for (const std::int64_t id : body.members)
       if (moving)
         v += (1.0 / n) * record.v_start[static_cast<std::size_t>(at[static_cast<std::size_t>(id)])];
-    add(places.at(static_cast<std::size_t>(at[static_cast<std::size_t>(body.members[0])])),
-        mass * n, v);
+    const auto first = static_cast<std::size_t>(at[static_cast<std::size_t>(body.members[0])]);
+    if (const Box<D>& box = record.start.box; moving && box.shear)
+      v[box.shear->flow] -= record.start.crossed[first] * box.sliding;
+    add(places.at(first), mass * n, v);
   }
 }
 

@@ -89,10 +89,10 @@ void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage
         throw BlowUpError(fmt::format("the position of particle {} at t = {:.6g} is not finite",
                                       particles_.id[i], time),
                           particles_.id[i]);
-  if (!particles_.bodies.empty()) place_arms(time, stage);
   {
     const PhaseTimer timer(phases_, Phase::neighbours);
     wrap_sheared(stage);
+    if (!particles_.bodies.empty()) place_arms(stage);
     list_.slide(stage.box);
     list_.update(stage.position);
   }
@@ -102,49 +102,6 @@ void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage
   if (model_.conservative()) add_conservative_forces(stage.network, stage.potential_force);
   surroundings_.add_potential_forces(particles_, stage.position, stage.potential_force);
   surroundings_.add_driving_forces(particles_, stage.position, time, stage.driving_force);
-}
-
-template <int D>
-void Dynamics<D>::wrap_sheared(Stage<D>& stage) const {
-  stage.crossed.assign(box_.shear ? stage.position.size() : 0, 0);
-  if (!box_.shear) return;
-  const auto gradient = static_cast<std::size_t>(box_.shear->gradient);
-  parallel_for(static_cast<std::int64_t>(stage.position.size()), [&](std::int64_t particle) {
-    const auto i = static_cast<std::size_t>(particle);
-    std::array<std::int32_t, static_cast<std::size_t>(D)> image{};
-    stage.box.wrap(stage.position[i], image);
-    stage.crossed[i] = image[gradient];
-  });
-}
-
-template <int D>
-void Dynamics<D>::write_slips(Stage<D>& stage) const {
-  PairNetwork<D>& network = stage.network;
-  network.slip_0.resize(box_.shear ? network.i.size() : 0);
-  if (!box_.shear) return;
-  parallel_for(network.size(), [&](std::int64_t edge) {
-    const auto k = static_cast<std::size_t>(edge);
-    const auto i = static_cast<std::size_t>(network.i[k]),
-               j = static_cast<std::size_t>(network.j[k]);
-    const int up = stage.box.images_up(stage.position[i] - stage.position[j]) + stage.crossed[i] -
-                   stage.crossed[j];
-    network.slip_0[k] = Vec<D>{};
-    network.slip_0[k][box_.shear->flow] = -up * stage.box.sliding;
-  });
-}
-
-/// Implicit stiffness acts on the whole slip; what slip_0 gives is known.
-template <int D>
-auto Dynamics<D>::without_sliding_springs(const Stage<D>& stage, const StepWeights& weights,
-                                          Unknowns load) -> Unknowns {
-  const Unknowns rest(load.size(), 0.0);
-  const auto subtract = [&](double time, const Unknowns& springs) {
-    for (std::size_t k = 0; k < load.size(); ++k) load[k] -= time * springs[k];
-  };
-  const double more = weights.bond_time - weights.stiffness_time;
-  if (weights.stiffness_time > 0.0) subtract(weights.stiffness_time, spring(stage, rest));
-  if (more != 0.0 && stage.network.bonds > 0) subtract(more, bond_spring(stage, rest));
-  return load;
 }
 
 template <int D>
@@ -249,18 +206,6 @@ void Dynamics<D>::balance_momentum(const Unknowns& load, double shift, Unknowns&
   for (std::size_t k = 0; k < q.size(); ++k) q[k] += excess.x[k % D];
 }
 
-/// Relative to the flow at their places the particles do not move in the mean: the same wherever the box is cut.
-template <int D>
-void Dynamics<D>::add_mean_flow(const Stage<D>& stage, Unknowns& q) {
-  Vec<D> mean{};
-  for (std::size_t i = 0; i < stage.position.size(); ++i) {
-    mean += stage.box.flow_velocity(stage.position[i]);
-    mean[box_.shear->flow] += stage.crossed[i] * stage.box.sliding;
-  }
-  mean *= 1.0 / static_cast<double>(stage.position.size());
-  for (std::size_t k = 0; k < q.size(); ++k) q[k] += mean.x[k % D];
-}
-
 template <int D>
 void Dynamics<D>::note(const SolveReport& report) {
   phases_[Phase::assembly] += report.assembly_seconds;
@@ -312,10 +257,11 @@ auto Dynamics<D>::end_velocity(const Stage<D>& stage) -> Unknowns {
 template <int D>
 void Dynamics<D>::set_end_momentum(const Unknowns& p) {
   const std::vector<Vec<D>> known = particles_.end_velocity;
-  if (dofs().bodies() == 0) return dofs().scatter({}, p, known, particles_.end_velocity);
   Unknowns q = p;
-  const std::vector<Vec<D>> arms = arms_at(particles_.position);
+  std::vector<Vec<D>> arms;
+  if (dofs().bodies() > 0) arms = arms_at(moved_in_, particles_.position);
   dofs().divide_by_inertia(arms, q);
+  cross_faces(q);
   dofs().scatter(arms, q, known, particles_.end_velocity);
 }
 
@@ -364,7 +310,7 @@ void Dynamics<D>::check_paths(const std::vector<Vec<D>>& velocity, double dt) co
 }
 
 template <int D>
-std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, double dt,
+std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, double dt, double t,
                                            std::int64_t& crossings) {
   check_paths(velocity, dt);
   const auto n = static_cast<std::int64_t>(velocity.size());
@@ -379,9 +325,10 @@ std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, 
     }
   });
   for (const std::int64_t count : caught) crossings += count;
+  const Box<D> box = box_.at(t + dt);
   for (std::size_t b = 0; b < particles_.bodies.size(); ++b) {
     RigidPose<D> pose = particles_.bodies[b].pose;
-    if (advance(b, velocity, dt, pose)) place(b, pose, r, nullptr);
+    if (advance(b, velocity, dt, box, pose)) place(b, pose, box, r, nullptr);
   }
   return r;
 }
@@ -389,46 +336,32 @@ std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, 
 template <int D>
 std::int64_t Dynamics<D>::move(const std::vector<Vec<D>>& velocity, double dt, double t) {
   check_paths(velocity, dt);
-  const Box<D> box = box_.at(t + dt);
-  faces_crossed_.resize(box.shear ? velocity.size() : 0);
+  const Box<D> box = moved_in_ = box_.at(t + dt);
+  const std::vector<std::int32_t> images_before = moving_images();
   std::vector<std::size_t> moved;
   for (std::size_t b = 0; b < particles_.bodies.size(); ++b)
-    if (advance(b, velocity, dt, particles_.bodies[b].pose)) moved.push_back(b);
+    if (advance(b, velocity, dt, box, particles_.bodies[b].pose)) moved.push_back(b);
   const auto n = static_cast<std::int64_t>(velocity.size());
   std::vector<std::int64_t> caught(ranges(n), 0);
   parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       particles_.position[i] += dt * velocity[i];
       particles_.velocity[i] = velocity[i];
-      const auto image = particles_.image[i];
       box.wrap(particles_.position[i], particles_.image[i]);
-      if (box.shear) {
-        const auto up = static_cast<std::size_t>(box.shear->gradient);
-        faces_crossed_[i] = Vec<D>{};
-        faces_crossed_[i][box.shear->flow] = (particles_.image[i][up] - image[up]) * box.sliding;
-        particles_.velocity[i] -= faces_crossed_[i];
-      }
       if (particles_.is_free(i) && surroundings_.confine(particles_.position[i]))
         ++caught[static_cast<std::size_t>(begin / range)];
     }
   });
   for (const std::size_t b : moved) {
-    place(b, particles_.bodies[b].pose, particles_.position, &particles_.image);
+    place(b, particles_.bodies[b].pose, box, particles_.position, &particles_.image);
     // The mirror does not turn bodies back: a constituent outside the box is an alarm.
     for (const std::int32_t p : dofs().constituents(b)) {
       Vec<D> r = particles_.position[static_cast<std::size_t>(p)];
       if (surroundings_.confine(r)) ++caught.front();
     }
   }
+  leave_images(images_before);
   return std::accumulate(caught.begin(), caught.end(), std::int64_t{0});
-}
-
-template <int D>
-void Dynamics<D>::cross_faces(Unknowns& q) {
-  if (faces_crossed_.empty()) return;
-  Unknowns lost;
-  dofs().gather({}, faces_crossed_, lost);
-  for (std::size_t k = 0; k < q.size(); ++k) q[k] -= lost[k];
 }
 
 template class Dynamics<2>;

@@ -59,7 +59,6 @@ void Integrator<D>::finish(Dynamics<D>& dynamics, const Clock& clock, const Unkn
   // What goes on is momentum, linear and angular: in 3D moments of inertia turn with the body.
   Unknowns p = dynamics.times_inertia(record_.start, dynamics.end_velocity(record_.start), 1.0);
   for (std::size_t k = 0; k < p.size(); ++k) p[k] = 2.0 * p_mid[k] - p[k];
-  dynamics.cross_faces(p);
   dynamics.set_end_momentum(p);
 }
 

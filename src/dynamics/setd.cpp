@@ -102,7 +102,6 @@ const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
     last_velocity_ = by_identity(dynamics, last);
     last_force_ = by_identity(dynamics, force);
   }
-  dynamics.cross_faces(v);
   dynamics.set_end_momentum(v);
   return record;
 }

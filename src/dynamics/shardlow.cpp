@@ -143,7 +143,6 @@ const StepRecord<D>& Shardlow<D>::step(Dynamics<D>& dynamics, const Clock& clock
   begun_ = true;
   std::vector<double> q;
   dynamics.dofs().gather({}, velocity, q);
-  dynamics.cross_faces(q);
   dynamics.set_end_momentum(q);
   return record;
 }

@@ -36,7 +36,7 @@ const StepRecord<D>& TwoStage<D>::step(Dynamics<D>& dynamics, const Clock& clock
 
   const double ahead = reach_ * clock.dt;
   const std::vector<Vec<D>> predicted =
-      dynamics.displaced(record.start.velocity, ahead, record.alarm_crossings);
+      dynamics.displaced(record.start.velocity, ahead, clock.time(), record.alarm_crossings);
   dynamics.evaluate(predicted, clock.time() + ahead, record.corrector);
   load = dynamics.force(record.corrector);
   // The noise is the stored vector, never drawn again or projected with the edges of r*.

@@ -29,7 +29,6 @@ const StepRecord<D>& VelocityVerlet<D>::step(Dynamics<D>& dynamics, const Clock&
   record.v_mid = dynamics.velocities(record.start, half_way);
   record.alarm_crossings += dynamics.move(record.v_mid, clock.dt, clock.time());
   dynamics.cross_faces(half_way);
-  dynamics.cross_faces(predicted);
   half_way_ = by_identity(dynamics, half_way);
   dynamics.set_end_momentum(predicted);
   return record;

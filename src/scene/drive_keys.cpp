@@ -11,10 +11,11 @@ namespace odpd {
 namespace {
 
 template <int D>
-int read_direction(const Config& config, const std::string& key) {
+int read_direction(const Config& config, const std::string& key,
+                   const std::optional<std::string>& fallback = {}) {
   std::vector<std::string> names;
   for (int c = 0; c < D; ++c) names.emplace_back(1, "xyz"[c]);
-  return config.choice(key, names)[0] - 'x';
+  return (fallback ? config.choice(key, names, *fallback) : config.choice(key, names))[0] - 'x';
 }
 
 template <int D>
@@ -58,6 +59,26 @@ Vec<D> net_force(const SceneSettings<D>& scene) {
   return net;
 }
 
+// Bodies that are held fix the frame in which the images slide.
+template <int D>
+void check_bodies_under_shear(const Config& config, const SceneSettings<D>& scene,
+                              const Shear& shear) {
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+    const Config entry = config.tables("body")[k];
+    if (scene.bodies[k].velocity.velocity[shear.gradient] != 0.0)
+      entry.fail("velocity",
+                 fmt::format("a body of given motion along {}, the gradient of [shear], would "
+                             "cross the sliding faces, behind which it has another velocity: set "
+                             "that component to 0, or let a force move the body",
+                             "xyz"[shear.gradient]));
+    if (scene.bodies[k].motion != BodyMotion::free && scene.mass > 0.0)
+      entry.fail("motion",
+                 "a held body under [shear] sets the place where the flow is at rest, and a fluid "
+                 "with mass starts with that of mid-box: set fluid.mass = 0.0, or let the body "
+                 "move freely");
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -75,7 +96,51 @@ void read_drive(const Config& config, SceneSettings<D>& scene) {
       "nothing (body_force.wave, or two regions that oppose each other)");
 }
 
+template <int D>
+void read_shear(const Config& config, SceneSettings<D>& scene) {
+  if (!config.has("shear")) return;
+  const Config entry = config.table("shear");
+  Shear shear;
+  const auto read_periodic = [&](const std::string& key, const std::string& fallback) {
+    const int c = read_direction<D>(entry, key, fallback);
+    if (!scene.box.is_periodic(c))
+      entry.fail(key, fmt::format("direction {} is bounded: sliding images need it periodic "
+                                  "(box.periodic); between walls give a [[wall]] a velocity",
+                                  "xyz"[c]));
+    return c;
+  };
+  shear.flow = read_periodic("flow", "x");
+  shear.gradient = read_periodic("gradient", "y");
+  if (shear.flow == shear.gradient)
+    entry.fail("gradient", "the flow varies across another direction than its own");
+  shear.rate = entry.number("rate");
+  shear.frequency = entry.non_negative("frequency", 0.0);
+  if (!scene.walls.empty())
+    entry.fail("rate",
+               "sliding images would tear a [[wall]] apart: make its direction periodic, or leave "
+               "[shear] out and give walls a velocity");
+  check_bodies_under_shear(config, scene, shear);
+  if (scene.largest_force() > 0.0)
+    config.table("body_force")
+        .fail("force",
+              "a force adds to the flow that [shear] imposes and, where it varies, differs between "
+              "sliding images: leave one of the two out");
+  if (shear.frequency > 0.0 && scene.mass > 0.0)
+    entry.fail("frequency",
+               "with mass an oscillation spreads from the sliding faces instead of being uniform: "
+               "set fluid.mass = 0.0, or frequency = 0.0");
+  if (config.table("fluid").non_negative("zeta_0", 0.0) > 0.0)
+    config.table("fluid").fail(
+        "zeta_0",
+        "a drag relative to the frame at rest differs between the sliding images of a particle: "
+        "leave it out under [shear] (against rattlers use fluid.rattler_friction)");
+  scene.box.shear = shear;
+  scene.box = scene.box.at(0.0);
+}
+
 template void read_drive<2>(const Config&, SceneSettings<2>&);
 template void read_drive<3>(const Config&, SceneSettings<3>&);
+template void read_shear<2>(const Config&, SceneSettings<2>&);
+template void read_shear<3>(const Config&, SceneSettings<3>&);
 
 }  // namespace odpd

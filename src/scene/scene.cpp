@@ -23,8 +23,20 @@ Scene<D>::Scene(SceneSettings<D> settings)
   relax(settings_.box, *model_, *this, settings_.relax_sweeps, particles_);
   join_images(bonds_, settings_.box, particles_);
   draw_velocities(settings_.seed, largest_kT(), settings_.mass, conserves_momentum(), particles_);
-  for (std::size_t i = 0; i < particles_.end_velocity.size() && settings_.box.shear; ++i)
-    particles_.end_velocity[i] += settings_.box.flow_velocity(particles_.position[i]);
+  if (settings_.box.shear) start_flow();
+}
+
+template <int D>
+void Scene<D>::start_flow() {
+  const Shear& shear = *settings_.box.shear;
+  const auto up = static_cast<std::size_t>(shear.gradient);
+  for (std::size_t i = 0; i < particles_.end_velocity.size(); ++i) {
+    if (particles_.is_known(i)) continue;
+    Vec<D>& v = particles_.end_velocity[i];
+    v += settings_.box.flow_velocity(particles_.position[i]);
+    v[shear.flow] +=
+        (particles_.image[i][up] - particles_.moving_image(i)[up]) * settings_.box.sliding;
+  }
 }
 
 // The particles are all there; those of molecules come last.

@@ -253,55 +253,6 @@ void read_walls(const Config& config, SceneSettings<D>& scene) {
                         "xyz"[c], high ? "upper" : "lower", "xyz"[c], high ? '+' : '-'));
 }
 
-// After [[wall]] and [fluid], which it contradicts.
-template <int D>
-void read_shear(const Config& config, SceneSettings<D>& scene) {
-  if (!config.has("shear")) return;
-  const Config entry = config.table("shear");
-  std::vector<std::string> names;
-  for (int c = 0; c < D; ++c) names.emplace_back(1, "xyz"[c]);
-  Shear shear;
-  const auto read_direction = [&](const std::string& key, const std::string& fallback) {
-    const std::string name = entry.choice(key, names, fallback);
-    if (!scene.box.is_periodic(name[0] - 'x'))
-      entry.fail(key, fmt::format("direction {} is bounded: sliding images need it periodic "
-                                  "(box.periodic); between walls give a [[wall]] a velocity",
-                                  name));
-    return name[0] - 'x';
-  };
-  shear.flow = read_direction("flow", "x");
-  shear.gradient = read_direction("gradient", "y");
-  if (shear.flow == shear.gradient)
-    entry.fail("gradient", "the flow varies across another direction than its own");
-  shear.rate = entry.number("rate");
-  shear.frequency = entry.non_negative("frequency", 0.0);
-  if (!scene.walls.empty())
-    entry.fail("rate",
-               "sliding images would tear a [[wall]] apart: make its direction periodic, or leave "
-               "[shear] out and give walls a velocity");
-  if (!scene.bodies.empty())
-    entry.fail(
-        "rate",
-        "a rigid [[body]] across sliding images is not part of this version: shear it between "
-        "walls that move, or use a [[molecule]] held together by bonds");
-  if (scene.largest_force() > 0.0)
-    config.table("body_force")
-        .fail("force",
-              "a force adds to the flow that [shear] imposes and, where it varies, differs between "
-              "sliding images: leave one of the two out");
-  if (shear.frequency > 0.0 && scene.mass > 0.0)
-    entry.fail("frequency",
-               "with mass an oscillation spreads from the sliding faces instead of being uniform: "
-               "set fluid.mass = 0.0, or frequency = 0.0");
-  if (config.table("fluid").non_negative("zeta_0", 0.0) > 0.0)
-    config.table("fluid").fail(
-        "zeta_0",
-        "a drag relative to the frame at rest differs between the sliding images of a particle: "
-        "leave it out under [shear] (against rattlers use fluid.rattler_friction)");
-  scene.box.shear = shear;
-  scene.box = scene.box.at(0.0);
-}
-
 template <int D>
 void read_start(const Config& config, SceneSettings<D>& scene) {
   const Config start = config.table("start");

@@ -286,7 +286,10 @@ expect_error 1 body name='a b' -- body name
 expect_error 1 body species=stone -- species "'stone'"
 expect_error 1 body motion=free --set fluid.mass=1.0 --set integrator.name=shardlow -- integrator.name '[[body]]'
 expect_error 1 body force='[1.0, 0.0]' --set integrator.name=monte-carlo -- 'pushed'
-expect_error 1 body motion=free --set 'shear={rate=1.0}' -- shear '[[body]]'
+expect_exit 0 body motion=free --set shear.rate=1.0 --set run.duration=0.02 --out sheared_body
+expect_error 1 body motion=given --set 'body.0.velocity=[0.0, 1.0]' --set shear.rate=1.0 -- body velocity gradient '[shear]'
+expect_error 1 body motion=fixed --set fluid.mass=1.0 --set shear.rate=1.0 -- body motion 'fluid.mass = 0.0'
+expect_error 1 body motion=fixed --set shear.rate=1.0 --set 'observe=[{kind="density-residual", clear_of_bodies=1.0}]' -- clear_of_bodies '[shear]'
 expect_error 1 run box --set 'observe=[{kind="bodies"}]' -- kind '[[body]]'
 # --- molecules and bonds ---
 write_periodic box

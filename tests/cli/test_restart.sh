@@ -447,6 +447,11 @@ for scheme in trapezoidal midpoint extrapolated implicit euler mass:trapezoidal 
   expect_exit 0 run many --threads 1 "${settings[@]}" --restart "$name-parts/checkpoint.h5"
   same_run "$name" "$name-parts"
 done
+sheared=(--set shear.rate=30.0 --set neighbours.reorder_every=4)
+expect_exit 0 run bodies --threads 1 "${sheared[@]}" --out sheared-bodies
+expect_exit 0 run bodies --threads 2 "${sheared[@]}" --set run.duration=0.05 --out sheared-bodies-parts
+expect_exit 0 run bodies --threads 1 "${sheared[@]}" --restart sheared-bodies-parts/checkpoint.h5
+same_run sheared-bodies sheared-bodies-parts
 still=(--set output.checkpoint_every=5)
 expect_exit 0 run many --threads 1 "${still[@]}" --out unsheared
 expect_exit 0 run many --threads 1 "${still[@]}" --set shear.rate=0.0 --out still

@@ -20,7 +20,7 @@
 namespace contract {
 
 enum class Model { central, transverse, far_friction };
-enum class Geometry { walls, periodic, open, obstacles, suspension };
+enum class Geometry { walls, periodic, open, obstacles, suspension, sheared };
 
 inline std::string name(Model model) {
   return model == Model::central ? "central" : model == Model::transverse ? "transverse" : "far";
@@ -30,10 +30,12 @@ inline std::string name(Geometry geometry) {
          : geometry == Geometry::periodic  ? "periodic"
          : geometry == Geometry::open      ? "open"
          : geometry == Geometry::obstacles ? "obstacles"
+         : geometry == Geometry::sheared   ? "sheared"
                                            : "suspension";
 }
 
-/// Two rigid bodies, one of them pushed and turned; with walls also a fixed and a moving obstacle.
+/// Two rigid bodies, one of them pushed and turned; with walls also a fixed and a moving obstacle, and under shear the first
+/// one lies across the sliding faces.
 template <int D>
 void add_bodies(odpd::SceneSettings<D>& s, bool walls) {
   odpd::BodySettings<D> body;
@@ -53,7 +55,7 @@ void add_bodies(odpd::SceneSettings<D>& s, bool walls) {
     return r;
   };
   const double low = walls ? 1.0 : 0.0;
-  body.positions = {place(0.2, low + 0.9)};
+  body.positions = {place(0.2, s.box.shear ? 0.1 : low + 0.9)};
   s.bodies.push_back(body);
   body.positions = {place(1.7, low + 1.6)};
   body.load.force[0] = 3.0;
@@ -86,7 +88,12 @@ odpd::SceneSettings<D> settings(Model model, Geometry geometry, double length) {
     p.gamma_far = 0.1;
     p.cutoff_far = 1.5;
   }
-  if (geometry == Geometry::obstacles || geometry == Geometry::suspension)
+  if (geometry == Geometry::sheared) {
+    s.box.shear = odpd::Shear{.flow = 0, .gradient = D - 1, .rate = 2.0, .start = 0.37 * length};
+    s.box = s.box.at(0.0);
+  }
+  if (geometry == Geometry::obstacles || geometry == Geometry::suspension ||
+      geometry == Geometry::sheared)
     add_bodies(s, geometry == Geometry::obstacles);
   if (geometry != Geometry::walls && geometry != Geometry::obstacles) return s;
   s.box.size[D - 1] += 2.0;

@@ -29,7 +29,8 @@ class Bodies : public ::testing::TestWithParam<std::tuple<Model, Geometry, int>>
 INSTANTIATE_TEST_SUITE_P(All, Bodies,
                          ::testing::Combine(::testing::Values(Model::central, Model::transverse),
                                             ::testing::Values(Geometry::obstacles,
-                                                              Geometry::suspension),
+                                                              Geometry::suspension,
+                                                              Geometry::sheared),
                                             ::testing::Values(2, 3)),
                          [](const auto& test) {
                            return contract::name(std::get<0>(test.param)) + "_" +
@@ -162,6 +163,7 @@ TEST_P(Bodies, ForceAndTorqueBalance) {
     odpd::draw_edge_noise(instant.stage.network, particles, 1, 3, 0.01, on_edges);
     odpd::add_conservative_forces(instant.stage.network, force);
     odpd::add_friction_forces<D>(instant.stage.network, velocity, force);
+    odpd::add_sliding_friction(instant.stage.network, force);
     odpd::add_edge_forces<D>(instant.stage.network, on_edges, force);
     instant.scene.add_potential_forces(particles, instant.stage.position, force);
     instant.scene.add_driving_forces(particles, particles.position, 0.0, force);

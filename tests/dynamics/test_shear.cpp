@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "odpd/core/parallel.h"
 #include "odpd/dynamics/integrator.h"
 #include "odpd/operator/edge_sums.h"
 #include "odpd/pairs/bonds.h"
@@ -27,6 +28,8 @@ struct ShearedToySettings {
   std::int64_t reorder_every = 7;
   std::string preconditioner = "auto";
   bool bonded = false;
+  bool bodies = false;  ///< four that move, across the faces of this box or of one cut 1.3 further
+  bool held = false;    ///< one more, at rest
 };
 
 template <int D>
@@ -36,6 +39,7 @@ struct ShearedToy {
     box.periodic.fill(true);
     box.shear = s.shear;
     box = box.at(0.0);
+    if (s.bodies) add_bodies(s);
     const auto count = s.count > 0 ? s.count : static_cast<std::size_t>(4.0 * box.volume());
     for (Vec<D> r : support::random_points<D>(Vec<D>{}, box.size, count, 9)) {
       if (s.shear) r[s.shear->gradient] += s.cut;
@@ -74,8 +78,36 @@ struct ShearedToy {
     solver.preconditioner = s.preconditioner;
     dynamics =
         std::make_unique<Dynamics<D>>(box, particles, *model, none, make_solver(solver), settings);
-    for (std::size_t i = 0; i < particles.end_velocity.size(); ++i)
+    for (std::size_t i = 0; i < particles.end_velocity.size() && s.shear; ++i) {
       particles.end_velocity[i] = box.flow_velocity(particles.position[i]);
+      particles.end_velocity[i][s.shear->flow] += boxes_from_centre(i) * box.sliding;
+    }
+  }
+
+  // Simplices, 0.5 wide, their centres next to a face.
+  void add_bodies(const ShearedToySettings& s) {
+    const int up = s.shear ? s.shear->gradient : 0;
+    const std::vector<double> heights{0.01, -0.02, -1.28, -1.31, 1.7};
+    for (std::size_t n = 0; n < (s.held ? 5U : 4U); ++n) {
+      RigidBody<D> body;
+      for (int k = 0; k < D + 1; ++k) {
+        Vec<D> b{};
+        if (k > 0) b[k - 1] = k == 1 ? 0.5 : 0.4;
+        body.frame.push_back(b);
+      }
+      Vec<D> mean{};
+      for (const Vec<D>& b : body.frame) mean += (1.0 / (D + 1)) * b;
+      for (Vec<D>& b : body.frame) b -= mean;
+      body.pose.centre = (n % 2 == 0 ? 0.3 : 0.8) * box.size;
+      body.pose.centre[up] = heights[n] + s.cut;
+      box.wrap(body.pose.centre);
+      body.known = n == 4;
+      particles.add_body(body, box, 0);
+    }
+  }
+  std::int32_t boxes_from_centre(std::size_t i) const {
+    const auto up = static_cast<std::size_t>(box.shear->gradient);
+    return particles.image[i][up] - particles.moving_image(i)[up];
   }
 
   std::vector<Vec<D>> by_id(const std::vector<Vec<D>>& v) const {
@@ -99,7 +131,8 @@ struct ShearedToy {
 // through the sliding faces.
 template <int D>
 double difference_of_paths(const ShearedToySettings& settings, const std::string& scheme,
-                           const Clock& clock, double cut, int& crossed) {
+                           const Clock& clock, double cut, int& crossed,
+                           int* bodies_crossed = nullptr) {
   ShearedToySettings moved = settings;
   moved.cut = cut;
   ShearedToy<D> a(settings), b(moved);
@@ -115,9 +148,12 @@ double difference_of_paths(const ShearedToySettings& settings, const std::string
     if (norm(d) < 1.5) most = std::max(most, norm(d - e));
   }
   crossed = 0;
-  for (const ShearedToy<D>* toy : {&a, &b})
-    for (const auto& image : toy->particles.image)
-      crossed += image[static_cast<std::size_t>(box.shear->gradient)] != 0 ? 1 : 0;
+  const auto up = static_cast<std::size_t>(box.shear->gradient);
+  for (const ShearedToy<D>* toy : {&a, &b}) {
+    for (const auto& image : toy->particles.image) crossed += image[up] != 0 ? 1 : 0;
+    for (const auto& body : toy->particles.bodies)
+      if (bodies_crossed != nullptr) *bodies_crossed += body.pose.image[up] != 0 ? 1 : 0;
+  }
   return most;
 }
 
@@ -155,6 +191,35 @@ TYPED_TEST(ShearedDynamics, PathsOfBondedParticlesDoNotDependOnTheCutEither) {
     EXPECT_LT(difference_of_paths<D>(settings, scheme, clock, 1.3, crossed), 1e-6) << scheme;
     EXPECT_GT(crossed, 3);
   }
+}
+
+// Each body lies across the faces in one of the two boxes, in one piece in the other.
+TYPED_TEST(ShearedDynamics, PathsOfRigidBodiesDoNotDependOnTheCutEither) {
+  constexpr int D = TypeParam::D;
+  struct Run {
+    const char* scheme;
+    double mass;
+    bool held;
+  };
+  int bodies_crossed = 0;
+  for (const Run& run :
+       {Run{"trapezoidal", 0.0, false}, Run{"trapezoidal", 0.0, true}, Run{"midpoint", 0.0, false},
+        Run{"extrapolated", 0.0, false}, Run{"implicit", 0.0, false}, Run{"euler", 0.0, false},
+        Run{"trapezoidal", 1.0, false}, Run{"extrapolated", 1.0, false}}) {
+    ShearedToySettings settings;
+    settings.bodies = true;
+    settings.held = run.held;
+    settings.mass = run.mass;
+    settings.shear->gradient = D - 1;
+    settings.shear->rate = 3.0;
+    int crossed = 0;
+    const Clock clock{.dt = 0.015, .total_steps = 12};
+    EXPECT_LT(difference_of_paths<D>(settings, run.scheme, clock, 1.3, crossed, &bodies_crossed),
+              1e-6)
+        << run.scheme << " mass " << run.mass << (run.held ? " held" : "");
+    EXPECT_GT(crossed, 3);
+  }
+  EXPECT_GT(bodies_crossed, 3);
 }
 
 TYPED_TEST(ShearedDynamics, OscillationDependsOnTheCutOnlyByTheErrorOfTheStep) {
@@ -218,6 +283,90 @@ TYPED_TEST(ShearedDynamics, ForcesBalanceInBothStages) {
     add_sliding_friction(stage->network, force);
     for (const Vec<D>& f : force) EXPECT_LT(norm(f), 1e-8);
   }
+}
+
+// Friction, noise and conservative forces on a body: no force and no torque is left, the random one with the arms of the
+// step's start; its constituents move as one, in the velocities of one image.
+TYPED_TEST(ShearedDynamics, ForcesAndTorquesOnBodiesBalanceInBothStages) {
+  constexpr int D = TypeParam::D;
+  ShearedToySettings settings;
+  settings.bodies = true;
+  settings.shear = Shear{D - 1, 0, 5.0, 0.0, 0.3};
+  ShearedToy<D> toy(settings);
+  int across = 0;
+  const auto integrator = make_integrator<D>("trapezoidal");
+  for (Clock clock{.dt = 0.01, .total_steps = 4}; !clock.finished(); clock.advance()) {
+    const auto& record = integrator->step(*toy.dynamics, clock);
+    for (const Stage<D>* stage : {&record.start, &record.corrector}) {
+      std::vector<Vec<D>> force(stage->position.size()), noise(force.size());
+      add_edge_forces<D>(record.start.network, record.edge_noise, noise);
+      add_conservative_forces(stage->network, force);
+      add_friction_forces<D>(stage->network, stage->velocity, force);
+      add_sliding_friction(stage->network, force);
+      for (std::size_t b = 0; b < toy.particles.bodies.size(); ++b) {
+        Vec<D> f{}, t{};
+        double size = 0.0;
+        std::vector<Vec<D>> arms, velocities;
+        for (const std::int32_t particle : toy.dynamics->dofs().constituents(b)) {
+          const auto p = static_cast<std::size_t>(particle);
+          f += force[p] + noise[p];
+          t += torque(stage->arms[p], force[p]) + torque(record.start.arms[p], noise[p]);
+          size += norm(noise[p]);
+          arms.push_back(stage->arms[p]);
+          velocities.push_back(stage->velocity[p]);
+          EXPECT_LT(norm(stage->arms[p]), 0.5) << "in one piece";
+          across += stage->crossed[p] != 0 ? 1 : 0;
+        }
+        EXPECT_LT(norm(f), 1e-8 * size);
+        EXPECT_LT(norm(t), 1e-8 * size);
+        const RigidMotion<D> motion = rigid_motion<D>(arms, velocities);
+        for (std::size_t k = 0; k < arms.size(); ++k)
+          EXPECT_LT(norm(velocities[k] - motion.velocity - swing(motion.angular, arms[k])), 1e-10);
+      }
+    }
+  }
+  EXPECT_GT(across, 8);
+}
+
+TYPED_TEST(ShearedDynamics, BodiesHaveTheSameBitsOnAnyThreadCount) {
+  constexpr int D = TypeParam::D;
+  const int before = threads();
+  std::vector<std::vector<Vec<D>>> results;
+  for (const int count : {1, 2}) {
+    set_threads(count, 0);
+    ShearedToySettings settings;
+    settings.bodies = settings.held = true;
+    settings.shear->frequency = 30.0;
+    ShearedToy<D> toy(settings);
+    const auto integrator = make_integrator<D>("trapezoidal");
+    toy.run(*integrator, {.dt = 0.01, .total_steps = D == 2 ? 8 : 3});
+    results.push_back(toy.by_id(toy.particles.position));
+  }
+  set_threads(before, 0);
+  EXPECT_EQ(results[0], results[1]);
+}
+
+TYPED_TEST(ShearedDynamics, WithoutARateItIsThePeriodicBoxToTheBitWithBodiesToo) {
+  constexpr int D = TypeParam::D;
+  for (const bool held : {false, true})
+    for (const double mass : {0.0, 0.5}) {
+      ShearedToySettings settings;
+      settings.bodies = true;
+      settings.held = held;
+      settings.mass = mass;
+      settings.shear = Shear{1, 0, 0.0, 0.0, 0.0};
+      ShearedToy<D> sheared(settings);
+      settings.shear.reset();
+      ShearedToy<D> plain(settings);
+      const Clock clock{.dt = 0.01, .total_steps = 20};
+      const auto a = make_integrator<D>("trapezoidal"), b = make_integrator<D>("trapezoidal");
+      sheared.run(*a, clock);
+      plain.run(*b, clock);
+      EXPECT_EQ(sheared.particles.position, plain.particles.position);
+      EXPECT_EQ(sheared.particles.velocity, plain.particles.velocity);
+      EXPECT_EQ(sheared.particles.end_velocity, plain.particles.end_velocity);
+      EXPECT_EQ(sheared.particles.image, plain.particles.image);
+    }
 }
 
 TYPED_TEST(ShearedDynamics, WithoutARateItIsThePeriodicBoxToTheBit) {

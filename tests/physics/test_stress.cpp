@@ -126,7 +126,7 @@ TEST(ViscosityAtRest, SlidingImagesAgreeToo) {
 }
 
 // At a tolerance of 1e-10 the balance of heat closes to about that in every stage: at rest, between moving walls, under sliding
-// images and with a force and a torque on rigid bodies.
+// images, with a force and a torque on rigid bodies, and with both.
 TEST(Heat, TheBalanceCloses) {
   const std::vector<std::string> all{"run.duration=0.5", "solver.tolerance=1e-10",
                                      "observe=[{kind=\"heat\"}]"};
@@ -142,7 +142,15 @@ TEST(Heat, TheBalanceCloses) {
   const Config bodies = with(
       "body=[{count=4, shape=\"points\", points=[{at=[-0.2, 0.0]}, {at=[0.2, 0.0]}, {at=[0.0, "
       "0.3]}], force=[2.0, 1.0], torque=3.0}]");
-  for (const Config& config : {with("seed=3"), sheared, with("shear={rate=1.0}"), bodies}) {
+  // Across the faces, and one that is held.
+  std::vector<std::string> across = all;
+  across.insert(across.end(),
+                {"shear={rate=1.0}",
+                 "body=[{shape=\"disk\", radius=0.6, force=[2.0, 1.0], torque=3.0, "
+                 "positions=[{at=[1.0, 0.1]}, {at=[4.0, 5.9]}]}, {name=\"held\", shape=\"disk\", "
+                 "radius=0.4, motion=\"fixed\", positions=[{at=[3.0, 0.2]}]}]"});
+  const Config both = equilibrium(across);
+  for (const Config& config : {with("seed=3"), sheared, with("shear={rate=1.0}"), bodies, both}) {
     Simulation<2> simulation(config, read_case(config, "heat"));
     simulation.run([] { return false; }, [] {});
     const Results results = simulation.results();

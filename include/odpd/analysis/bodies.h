@@ -2,12 +2,13 @@
 // What happens to obstacles and rigid bodies, per [[body]] and averaged over its bodies:
 //
 //   force, torque     of the edges (conservative, friction and random), stage means; about the body's centre
-//   velocity, angular_velocity   of the motion over the step
+//   velocity, angular_velocity   of the motion over the step; under [shear] without held bodies less that of the flow at the
+//                     centre
 //   diffusion, rotational_diffusion   from mean-square displacements of centre and orientation (free bodies)
 //   g(q)              density of the fluid at distance q from the centre, relative to its mean (Phan-Thien et al. 2016,
 //                     eq. 48), and the exclusion radius: of the largest ball with less than `empty` of the mean density
 //
-// and the mean velocity of the fluid particles. The orientation is followed by adding up the rotation from sample to sample,
+// and the mean velocity of the fluid particles, likewise. The orientation is followed by adding up the rotation from sample to sample,
 // so it must turn by less than half a turn between two.
 #include "odpd/analysis/displacements.h"
 #include "odpd/analysis/msd.h"

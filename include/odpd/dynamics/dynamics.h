@@ -106,16 +106,17 @@ class Dynamics {
   bool has_mass() const { return settings_.mass > 0.0; }
   /// The unknowns of the particles' end velocities (zeros without mass), at the stage of a step's start.
   Unknowns end_velocity(const Stage<D>& stage);
-  /// Sets them from momenta per mass p = P^T P q, with the moments of inertia of where the bodies are now.
+  /// After `move`: sets them from momenta per mass p = P^T P q of the step, with the moments of inertia of where the bodies
+  /// are now, as those of the images that are now in the box.
   void set_end_momentum(const Unknowns& p);
   /// inertia P^T P q: momenta, with a mass, or a drag, of `inertia` on every particle that moves.
   Unknowns times_inertia(const Stage<D>& stage, const Unknowns& q, double inertia);
   /// P q + the stage's known velocities.
   std::vector<Vec<D>> velocities(const Stage<D>& stage, const Unknowns& q);
 
-  /// position + dt velocity, wrapped (with shear by `evaluate` only); a particle that moves further than half the box throws, as in `move`.
-  /// Adds the mirror's catches to `crossings`.
-  std::vector<Vec<D>> displaced(const std::vector<Vec<D>>& velocity, double dt,
+  /// position + dt velocity from time t on, wrapped (with shear single particles by `evaluate` only); a particle that moves
+  /// further than half the box throws, as in `move`. Adds the mirror's catches to `crossings`.
+  std::vector<Vec<D>> displaced(const std::vector<Vec<D>>& velocity, double dt, double t,
                                 std::int64_t& crossings);
   /// Moves the particles by dt velocity from time t on and remembers it; returns the mirror's catches. Throws SolverError
   /// when a particle moves further than half the box in one step.
@@ -141,13 +142,16 @@ class Dynamics {
                                    Unknowns load);
   void add_mean_flow(const Stage<D>& stage, Unknowns& q);
   void check_paths(const std::vector<Vec<D>>& velocity, double dt) const;
-  std::vector<Vec<D>> arms_at(std::span<const Vec<D>> positions);
-  void place_arms(double time, Stage<D>& stage);
-  /// Moves a pose of the body along velocities of its constituents; false when these are zero.
-  bool advance(std::size_t body, const std::vector<Vec<D>>& velocity, double dt,
+  void leave_images(const std::vector<std::int32_t>& before);
+  std::vector<std::int32_t> moving_images() const;
+  std::vector<Vec<D>> arms_at(const Box<D>& box, std::span<const Vec<D>> positions);
+  void place_arms(Stage<D>& stage);
+  void count_boxes(std::size_t body, Stage<D>& stage);
+  /// Moves a pose of the body along velocities of its constituents, wrapped in `box`. False when that changes no position.
+  bool advance(std::size_t body, const std::vector<Vec<D>>& velocity, double dt, const Box<D>& box,
                RigidPose<D>& pose);
-  void place(std::size_t body, const RigidPose<D>& pose, std::vector<Vec<D>>& positions,
-             std::vector<typename Particles<D>::Image>* images);
+  void place(std::size_t body, const RigidPose<D>& pose, const Box<D>& box,
+             std::vector<Vec<D>>& positions, std::vector<typename Particles<D>::Image>* images);
   void balance_momentum(const Unknowns& load, double shift, Unknowns& q) const;
   void note(const SolveReport& report);
 
@@ -161,6 +165,7 @@ class Dynamics {
   std::unique_ptr<DofMap<D>> dofs_;
   RigidResistance<D> resistance_;
   std::vector<Vec<D>> faces_crossed_;  // with shear: velocity that each particle lost in `move`
+  Box<D> moved_in_;                    // the box at the end of `move`
   PhaseSeconds phases_;
   SolverStatistics statistics_;
 };

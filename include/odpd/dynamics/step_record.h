@@ -20,8 +20,9 @@ struct Stage {
   std::vector<Vec<D>> potential_force;  ///< conservative pair forces and wall potentials
   std::vector<Vec<D>> driving_force;    ///< body force
   std::vector<Vec<D>> velocity;         ///< solved (free) or prescribed (known)
-  /// With shear: boxes along the gradient that each particle has crossed since the step's start. Its velocity, and
-  /// network.slip_0 with it, is still that of the image that it was then.
+  /// With shear: boxes along the gradient from the image whose velocity this is to the one in the box. A particle keeps the
+  /// velocity of the image that it was at the step's start, a constituent that of the image hanging together with its body's
+  /// centre then, so that a body across the face moves as one; network.slip_0 holds the rest.
   std::vector<std::int32_t> crossed;
   SolveReport report;
 };

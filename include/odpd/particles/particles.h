@@ -24,7 +24,8 @@ class Particles {
   std::vector<Vec<D>> position;  ///< inside the box along periodic directions; length
   std::vector<Image> image;      ///< box crossings: unwrapped = position + image * size
   std::vector<Vec<D>> velocity;  ///< v_mid of the last step (prescribed for walls); length/time
-  /// v' at the end of the last step, whose variance is kT/m; empty unless carry_inertia was called; length/time
+  /// v' at the end of the last step, whose variance is kT/m; empty unless carry_inertia was called; length/time. Of
+  /// constituents that of `moving_image`.
   std::vector<Vec<D>> end_velocity;
   std::vector<std::int64_t>
       id;  ///< persistent identity, 0, 1, ...; survives reordering and restart
@@ -44,6 +45,12 @@ class Particles {
     return group[i] < 0 ? -group[i] - 1 : group[i] - 1 - walls;
   }
   std::int64_t free_count() const;
+  /// Where images differ in velocity (shear), a particle moves as the one in the box, a constituent as the image that hangs
+  /// together with its body's centre in the box. Boxes are counted from the same origin as `image`.
+  const Image& moving_image(std::size_t i) const {
+    const std::int32_t body = body_of(i);
+    return body < 0 ? image[i] : bodies[static_cast<std::size_t>(body)].pose.image;
+  }
 
   /// From now on `end_velocity` has an entry per particle, at first zero, and is state like the other fields.
   void carry_inertia();

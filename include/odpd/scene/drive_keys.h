@@ -1,5 +1,5 @@
 #pragma once
-// [body_force] of a case file: a uniform force, or a sinusoidal one, and forces of regions.
+// [body_force] of a case file: a uniform force, or a sinusoidal one, and forces of regions. [shear]: sliding images.
 #include "odpd/core/config.h"
 #include "odpd/scene/scene_settings.h"
 
@@ -9,5 +9,9 @@ namespace odpd {
 /// for a net force that nothing takes up.
 template <int D>
 void read_drive(const Config& config, SceneSettings<D>& scene);
+
+/// Sets the shear of the box; needs box, walls, bodies, fluid and forces. Throws ConfigError where these contradict it.
+template <int D>
+void read_shear(const Config& config, SceneSettings<D>& scene);
 
 }  // namespace odpd

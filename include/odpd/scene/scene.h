@@ -55,6 +55,7 @@ class Scene : public Surroundings<D> {
 
  private:
   void join_molecules();
+  void start_flow();
   double wall_energy(const WallSettings<D>& wall, const Vec<D>& r) const;
   double depth_behind(const WallSettings<D>& wall, const Vec<D>& r) const;
 
