@@ -201,7 +201,10 @@ MsdSettings read_msd(const Config& entry, const Scene<D>& scene) {
   if (fallback.empty())
     for (int c = 0; c < D; ++c)
       if (!scene.box().is_periodic(c)) fallback.push_back(names[static_cast<std::size_t>(c)]);
-  if (fallback.empty()) fallback = names;
+  if (fallback.empty())
+    for (int c = 0; c < D; ++c)
+      if (!scene.box().shear || scene.box().shear->flow != c)
+        fallback.push_back(names[static_cast<std::size_t>(c)]);
   for (const std::string& name : entry.texts("directions", fallback)) {
     const auto at = std::find(names.begin(), names.end(), name);
     if (at == names.end())
