@@ -212,9 +212,19 @@ void read_start_h5md(SceneSettings<D>& scene) {
   const std::size_t n = frame.position.size() / D;
   for (std::size_t k = 0; k < n; ++k) {
     // The walls of an odpd trajectory are placed by the case itself.
-    if (k < frame.group.size() && frame.group[k] > 0) continue;
+    const std::int64_t group = k < frame.group.size() ? frame.group[k] : 0;
+    const auto walls = static_cast<std::int64_t>(scene.walls.size());
+    if (group > 0 && (group <= walls || scene.bodies.empty())) continue;
     Vec<D> r;
     for (std::size_t c = 0; c < D; ++c) r.x[c] = frame.position[k * D + c];
+    if (group != 0 && !scene.bodies.empty()) {
+      const auto body = static_cast<std::size_t>(group < 0 ? -group - 1 : group - 1 - walls);
+      if (body >= n)
+        throw ConfigError(fmt::format("{}: it has no body {}", scene.start_file, body));
+      scene.start_bodies.resize(std::max(scene.start_bodies.size(), body + 1));
+      scene.start_bodies[body].push_back(r);
+      continue;
+    }
     scene.start_positions.push_back(r);
     if (k >= frame.species.size()) continue;
     const auto index = static_cast<std::size_t>(frame.species[k]);

@@ -108,8 +108,53 @@ std::vector<std::size_t> place_bodies(const std::vector<BodySettings<D>>& settin
   return kind;
 }
 
+template <int D>
+void move_bodies(const std::vector<std::vector<Vec<D>>>& constituents, const Box<D>& box,
+                 const std::string& file, Particles<D>& particles) {
+  const auto fail = [&](const std::string& what) {
+    throw ConfigError(fmt::format(
+        "{}: {}: start from it with the [[body]] entries of the run that wrote it", file, what));
+  };
+  if (constituents.size() != particles.bodies.size())
+    fail(
+        fmt::format("it has {} bodies, the case {}", constituents.size(), particles.bodies.size()));
+  const std::vector<std::int32_t> index = particles.index_of_id();
+  for (std::size_t b = 0; b < constituents.size(); ++b) {
+    RigidBody<D>& body = particles.bodies[b];
+    const std::vector<Vec<D>>& points = constituents[b];
+    if (points.size() != body.frame.size())
+      fail(fmt::format("body {} has {} particles in it, {} in the case", b, points.size(),
+                       body.frame.size()));
+    std::vector<Vec<D>> arms(points.size());
+    find_arms<D>(box, points, arms);
+    RigidPose<D> pose = body.pose;
+    pose.centre = points[0] - arms[0];
+    pose.image = {};
+    box.wrap(pose.centre);
+    const auto fits = [&](const RigidPose<D>& at) {
+      double off = 0.0, size = 0.0;
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        const Vec<D> b_k = at.orientation.turn(body.frame[k]);
+        off = std::max(off, norm(arms[k] - b_k));
+        size = std::max(size, norm(b_k));
+      }
+      return off <= 1e-5 * size;
+    };
+    // A fixed one, which may be a line without an orientation to be found, has that of the case.
+    if (!fits(pose)) pose.orientation = best_rotation(body.frame, arms);
+    if (!fits(pose)) fail(fmt::format("body {} has another shape than in the case", b));
+    body.pose = pose;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const auto p = static_cast<std::size_t>(index[static_cast<std::size_t>(body.members[k])]);
+      place_constituent(body, pose, k, box, particles.position[p], particles.image[p]);
+    }
+  }
+}
+
 #define ODPD_INSTANTIATE(D)                                                                      \
   template struct BodySettings<D>;                                                               \
+  template void move_bodies<D>(const std::vector<std::vector<Vec<D>>>&, const Box<D>&,           \
+                               const std::string&, Particles<D>&);                               \
   template std::vector<std::size_t> place_bodies<D>(const std::vector<BodySettings<D>>&,         \
                                                     const Box<D>&, const Vec<D>&, const Vec<D>&, \
                                                     std::uint64_t, Particles<D>&);

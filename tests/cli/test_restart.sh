@@ -452,6 +452,19 @@ expect_exit 0 run bodies --threads 1 "${sheared[@]}" --out sheared-bodies
 expect_exit 0 run bodies --threads 2 "${sheared[@]}" --set run.duration=0.05 --out sheared-bodies-parts
 expect_exit 0 run bodies --threads 1 "${sheared[@]}" --restart sheared-bodies-parts/checkpoint.h5
 same_run sheared-bodies sheared-bodies-parts
+# A frame has their poses.
+frames=$(find sheared-bodies -name 'trajectory.*.h5' | sort | tail -n 1)
+placed() { run bodies --threads 1 --set shear.rate=30.0 --set start.from=file --set "start.file=\"../$frames\"" "$@"; }
+expect_exit 0 placed --out placed
+expect_error 1 placed --set body.0.count=2 --out other_bodies -- "$frames" '4 bodies, the case 3' '[[body]]'
+expect_error 1 placed --set body.0.radius=0.4 --out other_shape -- "$frames" 'another shape'
+if have_h5py; then
+  expect "$python" -c "
+import glob, h5py, numpy as np
+first, last = (h5py.File(f)['particles/all/position/value'] for f in (sorted(glob.glob('placed/trajectory.*.h5'))[0], '$frames'))
+assert np.abs(first[0] - last[-1]).max() < 1e-12
+"
+fi
 still=(--set output.checkpoint_every=5)
 expect_exit 0 run many --threads 1 "${still[@]}" --out unsheared
 expect_exit 0 run many --threads 1 "${still[@]}" --set shear.rate=0.0 --out still

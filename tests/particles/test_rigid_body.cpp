@@ -96,6 +96,9 @@ TYPED_TEST(RigidBodyTest, ArmsAndMotionsAreFoundAcrossTheBoundary) {
   const std::span<const Vec<D>> positions(particles.position.data() + 1, 4);
   std::vector<Vec<D>> arms(4);
   odpd::find_arms<D>(box, positions, arms);
+  const auto orientation = odpd::best_rotation(body.frame, arms);
+  for (std::size_t k = 0; k < 4; ++k)
+    EXPECT_LT(norm(orientation.turn(body.frame[k]) - arms[k]), 1e-13);
   const RigidMotion<D> motion{support::random_vectors<D>(1, 2)[0], some_angle<D>(4, 1.0)};
   std::vector<Vec<D>> velocities;
   for (std::size_t k = 0; k < 4; ++k) {

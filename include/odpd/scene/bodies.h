@@ -48,4 +48,10 @@ std::vector<std::size_t> place_bodies(const std::vector<BodySettings<D>>& settin
                                       const Box<D>& box, const Vec<D>& low, const Vec<D>& high,
                                       std::uint64_t seed, Particles<D>& particles);
 
+/// Moves the bodies to where `constituents`, of each body in turn, lie. Throws ConfigError, naming `file`, where these are
+/// other bodies.
+template <int D>
+void move_bodies(const std::vector<std::vector<Vec<D>>>& constituents, const Box<D>& box,
+                 const std::string& file, Particles<D>& particles);
+
 }  // namespace odpd

@@ -85,7 +85,9 @@ struct SceneSettings {
   std::string start_file;                   ///< for StartKind::file, resolved
   std::vector<Vec<D>> start_positions;      ///< contents of the start file, filled by io's caller
   std::vector<std::int32_t> start_species;  ///< one per start position
-  std::int64_t relax_sweeps = 100;          ///< of overlap removal before the run
+  /// Constituents of each body in the file, in the order of the particles' bodies; empty: bodies start as the case says.
+  std::vector<std::vector<Vec<D>>> start_bodies;
+  std::int64_t relax_sweeps = 100;  ///< of overlap removal before the run
 
   std::int64_t molecule_beads() const;  ///< of all molecules
   /// Something drives a flow: a force, a moving wall, a body that is moved or pushed, shear.
