@@ -328,18 +328,17 @@ TYPED_TEST(ShearedDynamics, ForcesAndTorquesOnBodiesBalanceInBothStages) {
   EXPECT_GT(across, 8);
 }
 
-TYPED_TEST(ShearedDynamics, BodiesHaveTheSameBitsOnAnyThreadCount) {
-  constexpr int D = TypeParam::D;
+TEST(ShearedBodies, HaveTheSameBitsOnAnyThreadCount) {
   const int before = threads();
-  std::vector<std::vector<Vec<D>>> results;
+  std::vector<std::vector<Vec<2>>> results;
   for (const int count : {1, 2}) {
     set_threads(count, 0);
     ShearedToySettings settings;
     settings.bodies = settings.held = true;
     settings.shear->frequency = 30.0;
-    ShearedToy<D> toy(settings);
-    const auto integrator = make_integrator<D>("trapezoidal");
-    toy.run(*integrator, {.dt = 0.01, .total_steps = D == 2 ? 8 : 3});
+    ShearedToy<2> toy(settings);
+    const auto integrator = make_integrator<2>("trapezoidal");
+    toy.run(*integrator, {.dt = 0.01, .total_steps = 8});
     results.push_back(toy.by_id(toy.particles.position));
   }
   set_threads(before, 0);
