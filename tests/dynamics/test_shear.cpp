@@ -127,7 +127,7 @@ struct ShearedToy {
   std::unique_ptr<Dynamics<D>> dynamics;
 };
 
-// Largest difference between the paths of two runs, but for a motion of all particles as one. `crossed`: how many went
+// Largest difference between the paths, and those of the last step, of two runs, but for a motion of all particles as one. `crossed`: how many went
 // through the sliding faces.
 template <int D>
 double difference_of_paths(const ShearedToySettings& settings, const std::string& scheme,
@@ -141,11 +141,19 @@ double difference_of_paths(const ShearedToySettings& settings, const std::string
   b.run(*step_b, clock);
   const Box<D> box = a.box.at(static_cast<double>(clock.total_steps) * clock.dt);
   const auto r = a.by_id(a.particles.position), s = b.by_id(b.particles.position);
+  const auto v = a.by_id(a.particles.velocity), u = b.by_id(b.particles.velocity);
   double most = 0.0;
   for (std::size_t i = 1; i < r.size(); ++i) {
     const Vec<D> d = box.separation(r[i], r[0]), e = box.separation(s[i], s[0]);
     // Only as close as nearest images are.
-    if (norm(d) < 1.5) most = std::max(most, norm(d - e));
+    if (norm(d) >= 1.5) continue;
+    most = std::max(most, norm(d - e));
+    if (box.shear->frequency > 0.0) continue;
+    // The velocity of what is in the box.
+    Vec<D> slip = v[i] - v[0] - (u[i] - u[0]);
+    slip[box.shear->flow] -=
+        (box.images_up(r[i] - r[0]) - box.images_up(s[i] - s[0])) * box.sliding;
+    most = std::max(most, clock.dt * norm(slip));
   }
   crossed = 0;
   const auto up = static_cast<std::size_t>(box.shear->gradient);
