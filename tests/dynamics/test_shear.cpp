@@ -232,18 +232,21 @@ TYPED_TEST(ShearedDynamics, PathsOfRigidBodiesDoNotDependOnTheCutEither) {
 
 TYPED_TEST(ShearedDynamics, OscillationDependsOnTheCutOnlyByTheErrorOfTheStep) {
   constexpr int D = TypeParam::D;
-  ShearedToySettings settings;
-  settings.fluid.kT = 0.0;
-  settings.shear->rate = 3.0;
-  settings.shear->frequency = 5.0;
-  int crossed = 0;
-  const double coarse = difference_of_paths<D>(settings, "trapezoidal",
-                                               {.dt = 0.01, .total_steps = 40}, 1.3, crossed);
-  const double fine = difference_of_paths<D>(settings, "trapezoidal",
-                                             {.dt = 0.0025, .total_steps = 160}, 1.3, crossed);
-  EXPECT_LT(coarse, 0.02);
-  EXPECT_LT(fine, coarse / 10.0) << "second order: a factor of 16";
-  EXPECT_GT(crossed, 3);
+  for (const bool bodies : {false, true}) {
+    ShearedToySettings settings;
+    settings.fluid.kT = 0.0;
+    settings.bodies = bodies;
+    settings.shear->rate = 3.0;
+    settings.shear->frequency = 5.0;
+    int crossed = 0;
+    const double coarse = difference_of_paths<D>(settings, "trapezoidal",
+                                                 {.dt = 0.01, .total_steps = 40}, 1.3, crossed);
+    const double fine = difference_of_paths<D>(settings, "trapezoidal",
+                                               {.dt = 0.0025, .total_steps = 160}, 1.3, crossed);
+    EXPECT_LT(coarse, 0.02);
+    EXPECT_LT(fine, coarse / 10.0) << "second order: a factor of 16";
+    EXPECT_GT(crossed, 3);
+  }
 }
 
 TYPED_TEST(ShearedDynamics, SlipsOfTheShearedFlowFollowFromTheSeparationsAlone) {
