@@ -210,7 +210,7 @@ double Bodies<D>::exclusion_radius(std::size_t kind) const {
     if (beyond <= 0.0 && beyond + more > 0.0) radius = r - bodies_.bin * beyond / more;
     beyond += more;
   }
-  return radius;
+  return beyond > 0.0 ? radius : std::nan("");  // the largest ball does not end within r_max
 }
 
 template <int D>

@@ -111,8 +111,9 @@ ViscosityScene viscosity_scene(const Scene<D>& scene) {
     v.axis = shear->gradient;
     v.component = shear->flow;
     v.to = s.box.size[v.axis];
-    // A body that is held takes up some of the stress.
-    if (shear->frequency == 0.0 && shear->rate != 0.0 && !s.held()) v.kind = Kind::images;
+    // A body that is held takes up some of the stress, one that is pushed or turned adds to it.
+    if (shear->frequency == 0.0 && shear->rate != 0.0 && !s.held() && !s.loaded())
+      v.kind = Kind::images;
     return v;
   }
   if (sheared_across(s, v)) {

@@ -69,8 +69,8 @@ BlowUpWatch<D>::BlowUpWatch(const Scene<D>& scene, double multiple)
     flow_slip_ = 2.0 * std::sqrt(fastest_squared * scene.model().cutoff() / fluid_depth());
   // As between walls that move with half the sliding velocity each.
   if (const auto& shear = scene.box().shear)
-    flow_slip_ = std::abs(shear->rate) *
-                 std::sqrt(scene.model().cutoff() * scene.box().size[shear->gradient]);
+    flow_slip_ += std::abs(shear->rate) *
+                  std::sqrt(scene.model().cutoff() * scene.box().size[shear->gradient]);
 }
 
 template <int D>

@@ -214,10 +214,16 @@ void read_start_h5md(SceneSettings<D>& scene) {
     // The walls of an odpd trajectory are placed by the case itself.
     const std::int64_t group = k < frame.group.size() ? frame.group[k] : 0;
     const auto walls = static_cast<std::int64_t>(scene.walls.size());
-    if (group > 0 && (group <= walls || scene.bodies.empty())) continue;
+    if (group > 0 && group <= walls) continue;
+    if (group > 0 && scene.bodies.empty())
+      throw ConfigError(
+          fmt::format("{}: particle {} is of known velocity, of a wall or body that the case does "
+                      "not have: start "
+                      "from it with the [[wall]] and [[body]] entries of the run that wrote it",
+                      scene.start_file, k));
     Vec<D> r;
     for (std::size_t c = 0; c < D; ++c) r.x[c] = frame.position[k * D + c];
-    if (group != 0 && !scene.bodies.empty()) {
+    if (group != 0) {
       const auto body = static_cast<std::size_t>(group < 0 ? -group - 1 : group - 1 - walls);
       if (body >= n)
         throw ConfigError(fmt::format("{}: it has no body {}", scene.start_file, body));

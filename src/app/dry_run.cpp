@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "odpd/app/fluid_report.h"
+#include "odpd/app/report.h"
 #include "odpd/core/parallel.h"
 
 namespace odpd {
@@ -65,11 +66,10 @@ std::string trial_text(Simulation<D>& simulation) {
   simulation.step();
   const double seconds = watch.seconds();
   const Particles<D>& particles = simulation.scene().particles();
-  const std::int64_t free = particles.free_count();
   return fmt::format(
-      "{}\n  {}D, {} free particles, {} of known velocity\n"
+      "{}\n  {}D, {}\n"
       "  {} {} ({} of them equilibration), about {:.3g} s at {:.3g} ms each (measured once)\n\n",
-      simulation.settings().title, D, free, particles.size() - free, clock.total_steps, steps,
+      simulation.settings().title, D, population_text(particles), clock.total_steps, steps,
       clock.equilibration_steps, seconds * static_cast<double>(clock.total_steps), 1e3 * seconds);
 }
 
@@ -94,7 +94,6 @@ std::string dry_run_text(Simulation<D>& simulation) {
   dynamics.solve(stage, load, {dynamics.inertia(clock.dt), 0.0}, q);
   const double stage_seconds = watch.seconds();
 
-  const std::int64_t free = particles.free_count();
   // Two stages of edges, the operator's rows (both directions) and the solver's own memory.
   const std::int64_t rows =
       2 * stage.network.size() * static_cast<std::int64_t>((D + 3) * sizeof(double));
@@ -102,8 +101,8 @@ std::string dry_run_text(Simulation<D>& simulation) {
       static_cast<double>(2 * stage.network.bytes() + rows + stage.report.memory_bytes) /
       (1024.0 * 1024.0);
   std::string out = fmt::format(
-      "{}\n  {}D, {} free particles, {} of known velocity, {} edges ({:.1f} per particle)\n",
-      simulation.settings().title, D, free, particles.size() - free, stage.network.size(),
+      "{}\n  {}D, {}, {} edges ({:.1f} per particle)\n", simulation.settings().title, D,
+      population_text(particles), stage.network.size(),
       2.0 * static_cast<double>(stage.network.size()) / static_cast<double>(particles.size()));
   out += fmt::format(
       "  {} steps of dt = {} ({} of them equilibration), solver {}: {} iterations in a first "

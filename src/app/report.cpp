@@ -192,16 +192,24 @@ std::string summary_json(const Simulation<D>& simulation, const Results& results
 }
 
 template <int D>
+std::string population_text(const Particles<D>& particles) {
+  const std::int64_t free = particles.free_count();
+  std::int64_t known = 0;
+  for (std::size_t i = 0; i < particles.position.size(); ++i) known += particles.is_known(i);
+  const std::int64_t in_bodies = particles.size() - free - known;
+  return fmt::format("{} free particles, {}{} of known velocity", free,
+                     in_bodies > 0 ? fmt::format("{} in free bodies, ", in_bodies) : "", known);
+}
+
+template <int D>
 std::string report_text(const Simulation<D>& simulation, const Results& results,
                         const std::vector<CheckOutcome>& checks) {
   const CaseSettings& settings = simulation.settings();
   const Clock& clock = simulation.clock();
   std::string out = fmt::format("\n{}\n", settings.title);
-  out += fmt::format(
-      "  {}D, {} free particles and {} of known velocity; {} at dt = {}, {} steps (t = {:.6g}){}\n",
-      D, free_particles(simulation),
-      simulation.scene().particles().size() - free_particles(simulation), settings.integrator.name,
-      clock.dt, clock.step, clock.time(), clock.finished() ? "" : ", interrupted");
+  out += fmt::format("  {}D, {}; {} at dt = {}, {} steps (t = {:.6g}){}\n", D,
+                     population_text(simulation.scene().particles()), settings.integrator.name,
+                     clock.dt, clock.step, clock.time(), clock.finished() ? "" : ", interrupted");
   out += method_text(simulation);
   out += target_text(simulation, results);
   out += "\n" + fluid_text(simulation.scene(), results);
@@ -238,5 +246,7 @@ template std::string report_text<2>(const Simulation<2>&, const Results&,
                                     const std::vector<CheckOutcome>&);
 template std::string report_text<3>(const Simulation<3>&, const Results&,
                                     const std::vector<CheckOutcome>&);
+template std::string population_text<2>(const Particles<2>&);
+template std::string population_text<3>(const Particles<3>&);
 
 }  // namespace odpd

@@ -77,7 +77,7 @@ struct Placer {
 template <int D>
 std::vector<std::size_t> place_bodies(const std::vector<BodySettings<D>>& settings,
                                       const Box<D>& box, const Vec<D>& low, const Vec<D>& high,
-                                      std::uint64_t seed, Particles<D>& particles) {
+                                      std::uint64_t seed, bool at_random, Particles<D>& particles) {
   Placer<D> placer{box, low, high, CounterRandom(seed, Stream::body_poses), {}};
   // Given places come first, so that random ones keep clear of them.
   std::vector<std::vector<RigidPose<D>>> poses(settings.size());
@@ -92,7 +92,10 @@ std::vector<std::size_t> place_bodies(const std::vector<BodySettings<D>>& settin
   std::uint64_t number = 0;
   for (std::size_t k = 0; k < settings.size(); ++k)
     for (std::int64_t n = 0; settings[k].positions.empty() && n < settings[k].count; ++n) {
-      poses[k].push_back(placer.random_pose(settings[k], number++));
+      RigidPose<D> pose;
+      pose.centre = low;
+      if (at_random) pose = placer.random_pose(settings[k], number++);
+      poses[k].push_back(pose);
       placer.taken.push_back(
           {poses[k].back().centre, settings[k].radius() + 0.5 * settings[k].clearance});
     }
@@ -157,7 +160,7 @@ void move_bodies(const std::vector<std::vector<Vec<D>>>& constituents, const Box
                                const std::string&, Particles<D>&);                               \
   template std::vector<std::size_t> place_bodies<D>(const std::vector<BodySettings<D>>&,         \
                                                     const Box<D>&, const Vec<D>&, const Vec<D>&, \
-                                                    std::uint64_t, Particles<D>&);
+                                                    std::uint64_t, bool, Particles<D>&);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)
 #undef ODPD_INSTANTIATE

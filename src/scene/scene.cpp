@@ -14,7 +14,7 @@ Scene<D>::Scene(SceneSettings<D> settings)
   place_walls(settings_, particles_);
   particles_.walls = static_cast<std::int32_t>(settings_.walls.size());
   body_kind_ = place_bodies(settings_.bodies, settings_.box, fluid_low(), fluid_high(),
-                            settings_.seed, particles_);
+                            settings_.seed, settings_.start_bodies.empty(), particles_);
   if (!settings_.start_bodies.empty())
     move_bodies(settings_.start_bodies, settings_.box, settings_.start_file, particles_);
   place_fluid(settings_, fluid_low(), fluid_high(), particles_);

@@ -300,6 +300,13 @@ bool SceneSettings<D>::held() const {
 }
 
 template <int D>
+bool SceneSettings<D>::loaded() const {
+  return std::any_of(bodies.begin(), bodies.end(), [](const auto& b) {
+    return norm(b.load.force) > 0.0 || norm(b.load.torque) > 0.0;
+  });
+}
+
+template <int D>
 Vec<D> SceneSettings<D>::force_at(const Vec<D>& r) const {
   Vec<D> force = body_force;
   if (force_wave.number > 0)

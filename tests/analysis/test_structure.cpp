@@ -376,6 +376,8 @@ TYPED_TEST(StructureTest, ExclusionDoesNotTellASingleVisit) {
   const Scene<D> scene(s);
   odpd::Bodies<D> bodies({.kind = "bodies", .name = "b"}, {.msd = {}, .r_max = 1.5}, scene, 0.01,
                          false);
+  odpd::Bodies<D> near({.kind = "bodies", .name = "b"}, {.msd = {}, .r_max = 0.58}, scene, 0.01,
+                       false);
   StepRecord<D> record = records::record<D>(scene);
   record.start.arms.resize(record.start.position.size());
   for (std::size_t t = 0; t < samples; ++t) {
@@ -385,9 +387,10 @@ TYPED_TEST(StructureTest, ExclusionDoesNotTellASingleVisit) {
     for (std::size_t i = 0; i < record.start.position.size(); ++i)
       if (scene.particles().is_free(i)) record.start.position[i] = r[next++];
     bodies.measure(Clock{}, scene.particles(), record);
+    near.measure(Clock{}, scene.particles(), record);
   }
-  const auto results = records::results(bodies);
-  EXPECT_NEAR(records::mean(results, "b.body.exclusion_radius"), 0.6, 0.005);
+  EXPECT_NEAR(records::mean(records::results(bodies), "b.body.exclusion_radius"), 0.6, 0.005);
+  EXPECT_TRUE(std::isnan(records::mean(records::results(near), "b.body.exclusion_radius")));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "odpd/core/random.h"
 #include "odpd/operator/edge_sums.h"
 #include "odpd/scene/fill.h"
+#include "support/points.h"
 
 namespace odpd {
 namespace {
@@ -85,6 +86,31 @@ TYPED_TEST(BlowUp, VelocitiesRelativeToNeighbours) {
   EXPECT_EQ(watch.judge(stage_of(scene), 0.01), "");
   set(30.0, 0.0);
   EXPECT_NE(watch.judge(stage_of(scene), 0.01).find("kinetic temperature"), std::string::npos);
+}
+
+// The same velocities are no blow-up where a body of that speed stirs the fluid.
+TYPED_TEST(BlowUp, VelocitiesNextToAFastBody) {
+  constexpr int D = TypeParam::value;
+  for (const double speed : {0.0, 1e4}) {
+    SceneSettings<D> settings = box_of<D>(StartKind::random);
+    settings.mass = 0.01;
+    settings.pairs[0].a = 1.0;
+    BodySettings<D> body;
+    body.shape = {Vec<D>{}};
+    body.motion = BodyMotion::given;
+    body.positions = {support::uniform_vec<D>(1.0)};
+    body.velocity.velocity[0] = speed;
+    settings.bodies = {body};
+    Scene<D> scene(settings);
+    Particles<D>& particles = scene.particles();
+    particles.carry_inertia();
+    BlowUpWatch<D> watch(scene, 10.0);
+    for (std::size_t i = 0; i < particles.end_velocity.size(); ++i)
+      particles.end_velocity[i][0] = i % 2 == 0 ? 500.0 : -500.0;
+    const std::string judgement = watch.judge(stage_of(scene), 1e-6);
+    EXPECT_EQ(judgement.find("kinetic temperature") != std::string::npos, speed == 0.0)
+        << judgement;
+  }
 }
 
 TYPED_TEST(BlowUp, JumpsOfNeighboursPastEachOther) {

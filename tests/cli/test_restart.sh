@@ -458,6 +458,9 @@ placed() { run bodies --threads 1 --set shear.rate=30.0 --set start.from=file --
 expect_exit 0 placed --out placed
 expect_error 1 placed --set body.0.count=2 --out other_bodies -- "$frames" '4 bodies, the case 3' '[[body]]'
 expect_error 1 placed --set body.0.radius=0.4 --out other_shape -- "$frames" 'another shape'
+expect_error 1 placed --set 'body=[]' --out no_bodies -- "$frames" '[[body]]'
+# Random places are not sought for bodies that have theirs in the file.
+expect_exit 0 placed --set body.0.clearance=100.0 --out tight
 if have_h5py; then
   expect "$python" -c "
 import glob, h5py, numpy as np

@@ -1,14 +1,17 @@
 // Einstein's relation of rigid bodies, D = kT mu with kT = 1, for translation and rotation, within 3 %.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
+
 #include "support/einstein.h"
 
 namespace odpd {
 namespace {
 
 TEST(LongEinstein, DiffusionIsMobility) {
-  const auto d = support::transport("trapezoidal", {}, 300.0);
-  const auto mu = support::transport("trapezoidal", {{{2.0, 0.0}}, {{1.0, 0.0}}}, 1000.0);
+  const auto d = support::diffusion(0.02, 3.0, 300.0);
+  const auto mu = support::mobility(2.0, 1.0, 0.02, 1000.0);
   for (const std::size_t k : {0, 1}) {
     const double ratio = d[k].value / mu[k].value;
     const double error =

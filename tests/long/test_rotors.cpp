@@ -7,7 +7,7 @@ namespace odpd {
 namespace {
 
 TEST(LongRotors, SampleTheirAnglesWithinThreePercent) {
-  const support::Fraction f = support::rotors_turned_away("trapezoidal", 70000);
+  const support::Fraction f = support::rotors_turned_away("trapezoidal", 70000, 0.005);
   RecordProperty("fraction", std::to_string(f.value));
   EXPECT_LT(f.standard_error, 0.008);
   EXPECT_NEAR(f.value, 1.0, 0.03) << "standard error " << f.standard_error;

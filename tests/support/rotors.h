@@ -44,7 +44,8 @@ struct Fraction {
 
 // Fraction of the time that tips spend more than a quarter turn from angle 0, where a frozen particle is close, relative to the
 // exact one; started from the exact distribution. Standard error from ten blocks of copies.
-inline Fraction rotors_turned_away(const std::string& scheme, std::int64_t steps) {
+inline Fraction rotors_turned_away(const std::string& scheme, std::int64_t steps,
+                                   double dt = 0.01) {
   const double edge = rotors_per_side * rotor_spacing;
   const Box<2> box{{{edge, edge}}, {true, true}};
   constexpr int points = 10000;
@@ -89,7 +90,7 @@ inline Fraction rotors_turned_away(const std::string& scheme, std::int64_t steps
                        make_solver({.name = "pcg", .tolerance = 1e-8}), DynamicsSettings{});
   const auto integrator = make_integrator<2>(scheme);
   std::vector<double> turned(10, 0.0);
-  for (Clock clock{.dt = 0.01, .total_steps = steps}; !clock.finished(); clock.advance()) {
+  for (Clock clock{.dt = dt, .total_steps = steps}; !clock.finished(); clock.advance()) {
     integrator->step(dynamics, clock);
     for (std::size_t b = 0; b < particles.bodies.size(); ++b) {
       const auto index = dynamics.dofs().constituents(b);

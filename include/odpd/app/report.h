@@ -34,6 +34,9 @@ std::string summary_json(const Simulation<D>& simulation, const Results& results
 template <int D>
 std::string report_text(const Simulation<D>& simulation, const Results& results,
                         const std::vector<CheckOutcome>& checks);
+/// "144 free particles, 6 in free bodies, 40 of known velocity"
+template <int D>
+std::string population_text(const Particles<D>& particles);
 /// "1.2345 +- 0.0067": digits by the error.
 std::string with_error(double value, double standard_error);
 

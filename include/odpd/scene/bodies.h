@@ -42,11 +42,11 @@ void turn_at_random(const std::array<double, 4>& u, Rotation<3>& orientation);
 
 /// Adds all bodies to the particles, those of unknown motion first, each [[body]] in turn, and returns for each body of the
 /// particles the index of its [[body]]. Random places lie between `low` and `high`. Throws ConfigError where there is no
-/// room.
+/// room. Without `at_random` those without `positions` are left at `low`, for move_bodies.
 template <int D>
 std::vector<std::size_t> place_bodies(const std::vector<BodySettings<D>>& settings,
                                       const Box<D>& box, const Vec<D>& low, const Vec<D>& high,
-                                      std::uint64_t seed, Particles<D>& particles);
+                                      std::uint64_t seed, bool at_random, Particles<D>& particles);
 
 /// Moves the bodies to where `constituents`, of each body in turn, lie. Throws ConfigError, naming `file`, where these are
 /// other bodies.

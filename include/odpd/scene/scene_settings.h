@@ -94,6 +94,8 @@ struct SceneSettings {
   bool driven() const;
   /// Walls, or bodies of known motion, hold the fluid and take up a net force.
   bool held() const;
+  /// Whether a force or torque acts on a body.
+  bool loaded() const;
   /// Driving force on a particle at r: body force or wave, and regions. Where nothing takes up a net force, the scene
   /// balances it on the free particles (Scene::add_driving_forces).
   Vec<D> force_at(const Vec<D>& r) const;
