@@ -36,8 +36,8 @@ BlockAverage sample(const std::string& scheme, double dt, std::int64_t steps) {
   particles.walls = 1;
   std::vector<Bond> bonds;
   for (std::int64_t id = 0; id < post; ++id)
-    bonds.push_back({id, post, {.H = 4.0, .r_0 = 0.0, .exclude = BondExclusion::all}});
-  for (const Vec<2>& r : support::random_points<2>(Vec<2>{}, box.size, 80, 3))
+    bonds.push_back({id, post, {.H = 8.0, .r_0 = 0.0, .exclude = BondExclusion::all}});
+  for (const Vec<2>& r : support::random_points<2>(Vec<2>{}, box.size, 100, 3))
     particles.add(r, 0, 0);
   const BondedModel<2> model(std::make_unique<DpdModel<2>>(
                                  1, std::vector{DpdParameters{.a = 18.5, .gamma = 4.5, .s = 0.5}}),
@@ -64,7 +64,7 @@ BlockAverage sample(const std::string& scheme, double dt, std::int64_t steps) {
 
 TEST(LongTrappedBodies, SampleWhatMonteCarloDoes) {
   const BlockAverage exact = sample("monte-carlo", 1.0, 200000);
-  const BlockAverage measured = sample("trapezoidal", 0.01, 150000);
+  const BlockAverage measured = sample("trapezoidal", 0.005, 150000);
   const char* names[] = {"square distance from the post", "distance", "cos of three angles"};
   for (std::size_t k = 0; k < 3; ++k) {
     const double error = std::hypot(exact.standard_error(k), measured.standard_error(k));
