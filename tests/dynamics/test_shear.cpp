@@ -10,6 +10,7 @@
 #include "odpd/pairs/dpd.h"
 #include "support/dimensions.h"
 #include "support/points.h"
+#include "support/simplex.h"
 
 namespace odpd {
 namespace {
@@ -89,15 +90,7 @@ struct ShearedToy {
     const int up = s.shear ? s.shear->gradient : 0;
     const std::vector<double> heights{0.01, -0.02, -1.28, -1.31, 1.7};
     for (std::size_t n = 0; n < (s.held ? 5U : 4U); ++n) {
-      RigidBody<D> body;
-      for (int k = 0; k < D + 1; ++k) {
-        Vec<D> b{};
-        if (k > 0) b[k - 1] = k == 1 ? 0.5 : 0.4;
-        body.frame.push_back(b);
-      }
-      Vec<D> mean{};
-      for (const Vec<D>& b : body.frame) mean += (1.0 / (D + 1)) * b;
-      for (Vec<D>& b : body.frame) b -= mean;
+      RigidBody<D> body = support::simplex_body<D>();
       body.pose.centre = (n % 2 == 0 ? 0.3 : 0.8) * box.size;
       body.pose.centre[up] = heights[n] + s.cut;
       box.wrap(body.pose.centre);

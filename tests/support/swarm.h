@@ -8,6 +8,7 @@
 #include "odpd/dynamics/integrator.h"
 #include "odpd/pairs/dpd.h"
 #include "support/points.h"
+#include "support/simplex.h"
 
 namespace support {
 
@@ -21,15 +22,7 @@ struct Swarm {
     box.size = support::uniform_vec<D>(0.7 * side);
     box.periodic.fill(true);
     for (const double where : {0.25, 0.7}) {
-      RigidBody<D> body;
-      for (int k = 0; k < D + 1; ++k) {
-        Vec<D> b{};
-        if (k > 0) b[k - 1] = k == 1 ? 0.5 : 0.4;
-        body.frame.push_back(b);
-      }
-      Vec<D> mean{};
-      for (const Vec<D>& b : body.frame) mean += (1.0 / (D + 1)) * b;
-      for (Vec<D>& b : body.frame) b -= mean;
+      RigidBody<D> body = support::simplex_body<D>();
       body.pose.centre = where * box.size;
       particles.add_body(body, box, 0);
     }
