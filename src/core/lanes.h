@@ -1,9 +1,10 @@
 #pragma once
-// Sixteen floats side by side, for kernel files only (src/*/*_{portable,avx2,avx512}.cpp). Everything here has internal
-// linkage: each instruction path compiles its own copy.
+// Floats side by side, for kernel files only (src/*/*_{portable,avx2,avx512}.cpp). Everything here has internal
+// linkage: each instruction path compiles its own copy. Data come in groups of sixteen on every path; a path takes
+// `width` of them at a time, as many as a register holds: wider vectors would live in memory.
 //
 // Node vectors are stored node by node with `node_stride<D>` floats each (the fourth one of a node in 3D is unused), so
-// that one load brings all components of a neighbour; kernels turn sixteen nodes into one vector per component.
+// that one load brings all components of a neighbour; kernels turn `width` nodes into one vector per component.
 #include <cstddef>
 #include <cstdint>
 #if defined(__SSE2__)
@@ -20,8 +21,17 @@ constexpr int lanes = 16;
 
 namespace {
 
-using Floats = float __attribute__((vector_size(64)));
-using FloatsAnywhere = float __attribute__((vector_size(64), aligned(4), may_alias));
+/// Floats per register.
+#if defined(__AVX512F__)
+constexpr int width = 16;
+#elif defined(__AVX2__)
+constexpr int width = 8;
+#else
+constexpr int width = 4;
+#endif
+
+using Floats = float __attribute__((vector_size(4 * width)));
+using FloatsAnywhere = float __attribute__((vector_size(4 * width), aligned(4), may_alias));
 
 inline Floats load(const float* p) { return *reinterpret_cast<const FloatsAnywhere*>(p); }
 inline void store(float* p, Floats v) { *reinterpret_cast<FloatsAnywhere*>(p) = v; }
@@ -29,7 +39,7 @@ inline void store(float* p, Floats v) { *reinterpret_cast<FloatsAnywhere*>(p) = 
 /// Sum of the lanes in double, in lane order.
 inline double sum_of(Floats v) {
   double s = 0.0;
-  for (int l = 0; l < lanes; ++l) s += static_cast<double>(v[l]);
+  for (int l = 0; l < width; ++l) s += static_cast<double>(v[l]);
   return s;
 }
 
@@ -40,7 +50,7 @@ struct NodeLanes {
 
 #if defined(__AVX512F__)
 
-/// The nodes 0..15 at p, each `node_stride` floats.
+/// The first nodes at p, each `node_stride` floats.
 inline NodeLanes<3> load_nodes3(const float* p) {
   const auto at = [p](int quad) { return _mm512_loadu_ps(p + 16 * quad); };
   // quad k holds nodes 4k..4k+3; in-lane transposition wants {k, 4+k, 8+k, 12+k}.
@@ -122,49 +132,42 @@ inline NodeLanes<D> gather_nodes(const float* p, const std::int32_t* offset) {
 
 #elif defined(__SSE2__)
 
-// `Part` holds a quarter (SSE2) or half (AVX2) of the lanes, in quads of four nodes; node(l) are their addresses.
 #if defined(__AVX2__)
-using Part = __m256;
-inline Part quads(const float* a, const float* b) {
-  return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(a)), _mm_loadu_ps(b), 1);
+using Register = __m256;
+// Nodes k and 4 + k.
+template <class Address>
+inline Register quads(const Address& node, int k) {
+  return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(node(k))),
+                              _mm_loadu_ps(node(4 + k)), 1);
 }
-inline Part low_pairs(Part a, Part b) { return _mm256_unpacklo_ps(a, b); }
-inline Part high_pairs(Part a, Part b) { return _mm256_unpackhi_ps(a, b); }
-inline Part low_halves(Part a, Part b) { return _mm256_shuffle_ps(a, b, 0x44); }
-inline Part high_halves(Part a, Part b) { return _mm256_shuffle_ps(a, b, 0xEE); }
-inline Part evens(Part a, Part b) { return _mm256_shuffle_ps(a, b, 0x88); }
-inline Part odds(Part a, Part b) { return _mm256_shuffle_ps(a, b, 0xDD); }
+inline Register low_pairs(Register a, Register b) { return _mm256_unpacklo_ps(a, b); }
+inline Register high_pairs(Register a, Register b) { return _mm256_unpackhi_ps(a, b); }
+inline Register low_halves(Register a, Register b) { return _mm256_shuffle_ps(a, b, 0x44); }
+inline Register high_halves(Register a, Register b) { return _mm256_shuffle_ps(a, b, 0xEE); }
+inline Register evens(Register a, Register b) { return _mm256_shuffle_ps(a, b, 0x88); }
+inline Register odds(Register a, Register b) { return _mm256_shuffle_ps(a, b, 0xDD); }
 #else
-using Part = __m128;
-inline Part quads(const float* a, const float*) { return _mm_loadu_ps(a); }
-inline Part low_pairs(Part a, Part b) { return _mm_unpacklo_ps(a, b); }
-inline Part high_pairs(Part a, Part b) { return _mm_unpackhi_ps(a, b); }
-inline Part low_halves(Part a, Part b) { return _mm_shuffle_ps(a, b, 0x44); }
-inline Part high_halves(Part a, Part b) { return _mm_shuffle_ps(a, b, 0xEE); }
-inline Part evens(Part a, Part b) { return _mm_shuffle_ps(a, b, 0x88); }
-inline Part odds(Part a, Part b) { return _mm_shuffle_ps(a, b, 0xDD); }
-#endif
-constexpr int part_lanes = sizeof(Part) / sizeof(float);
-
-inline void put_part(Floats& v, int first, Part part) {
-  __builtin_memcpy(reinterpret_cast<float*>(&v) + first, &part, sizeof part);
+using Register = __m128;
+template <class Address>
+inline Register quads(const Address& node, int k) {
+  return _mm_loadu_ps(node(k));
 }
+inline Register low_pairs(Register a, Register b) { return _mm_unpacklo_ps(a, b); }
+inline Register high_pairs(Register a, Register b) { return _mm_unpackhi_ps(a, b); }
+inline Register low_halves(Register a, Register b) { return _mm_shuffle_ps(a, b, 0x44); }
+inline Register high_halves(Register a, Register b) { return _mm_shuffle_ps(a, b, 0xEE); }
+inline Register evens(Register a, Register b) { return _mm_shuffle_ps(a, b, 0x88); }
+inline Register odds(Register a, Register b) { return _mm_shuffle_ps(a, b, 0xDD); }
+#endif
+inline Floats floats(Register v) { return reinterpret_cast<Floats>(v); }
 
 template <class Address>
 inline NodeLanes<3> join_nodes3(const Address& node) {
-  NodeLanes<3> v;
-  for (int l = 0; l < lanes; l += part_lanes) {
-    const auto four = [&node, l](int k) {
-      return quads(node(l + k), node(l + part_lanes / 2 + k));
-    };
-    const Part a = four(0), b = four(1), c = four(2), d = four(3);
-    const Part lo_ab = low_pairs(a, b), hi_ab = high_pairs(a, b);
-    const Part lo_cd = low_pairs(c, d), hi_cd = high_pairs(c, d);
-    put_part(v.c[0], l, low_halves(lo_ab, lo_cd));
-    put_part(v.c[1], l, high_halves(lo_ab, lo_cd));
-    put_part(v.c[2], l, low_halves(hi_ab, hi_cd));
-  }
-  return v;
+  const Register a = quads(node, 0), b = quads(node, 1), c = quads(node, 2), d = quads(node, 3);
+  const Register lo_ab = low_pairs(a, b), hi_ab = high_pairs(a, b);
+  const Register lo_cd = low_pairs(c, d), hi_cd = high_pairs(c, d);
+  return {{floats(low_halves(lo_ab, lo_cd)), floats(high_halves(lo_ab, lo_cd)),
+           floats(low_halves(hi_ab, hi_cd))}};
 }
 
 template <class Address>
@@ -175,18 +178,13 @@ inline NodeLanes<2> join_nodes2(const Address& node) {
     };
     return _mm_castpd_ps(_mm_unpacklo_pd(one(node(l)), one(node(l + 1))));
   };
-  NodeLanes<2> v;
-  for (int l = 0; l < lanes; l += part_lanes) {
 #if defined(__AVX2__)
-    const Part ab = _mm256_insertf128_ps(_mm256_castps128_ps256(two(l)), two(l + 4), 1);
-    const Part cd = _mm256_insertf128_ps(_mm256_castps128_ps256(two(l + 2)), two(l + 6), 1);
+  const Register ab = _mm256_insertf128_ps(_mm256_castps128_ps256(two(0)), two(4), 1);
+  const Register cd = _mm256_insertf128_ps(_mm256_castps128_ps256(two(2)), two(6), 1);
 #else
-    const Part ab = two(l), cd = two(l + 2);
+  const Register ab = two(0), cd = two(2);
 #endif
-    put_part(v.c[0], l, evens(ab, cd));
-    put_part(v.c[1], l, odds(ab, cd));
-  }
-  return v;
+  return {{floats(evens(ab, cd)), floats(odds(ab, cd))}};
 }
 
 template <int D, class Address>
@@ -213,21 +211,21 @@ template <int D>
 inline NodeLanes<D> load_nodes(const float* p) {
   NodeLanes<D> v;
   for (int c = 0; c < D; ++c)
-    for (int l = 0; l < lanes; ++l) v.c[c][l] = p[node_stride<D> * l + c];
+    for (int l = 0; l < width; ++l) v.c[c][l] = p[node_stride<D> * l + c];
   return v;
 }
 
 template <int D>
 inline NodeLanes<D> gather_nodes(const float* p, const std::int32_t* offset) {
   NodeLanes<D> v;
-  for (int l = 0; l < lanes; ++l)
+  for (int l = 0; l < width; ++l)
     for (int c = 0; c < D; ++c) v.c[c][l] = p[offset[l] + c];
   return v;
 }
 
 #endif
 
-/// Writes sixteen nodes; the unused component of a node in 3D becomes zero.
+/// Writes `width` nodes; the unused component of a node in 3D becomes zero.
 template <int D>
 inline void store_nodes(float* p, const NodeLanes<D>& v) {
 #if defined(__AVX512F__)
@@ -257,7 +255,7 @@ inline void store_nodes(float* p, const NodeLanes<D>& v) {
     _mm512_storeu_ps(p + 48, _mm512_shuffle_f32x4(e2, e3, 0xDD));
   }
 #elif defined(__SSE2__)
-  for (int quad = 0; quad < 4; ++quad) {
+  for (int quad = 0; quad < width / 4; ++quad) {
     __m128 part[3] = {};
     for (int c = 0; c < D; ++c)
       __builtin_memcpy(&part[c], reinterpret_cast<const char*>(&v.c[c]) + 16 * quad, 16);
@@ -276,7 +274,7 @@ inline void store_nodes(float* p, const NodeLanes<D>& v) {
     }
   }
 #else
-  for (int l = 0; l < lanes; ++l) {
+  for (int l = 0; l < width; ++l) {
     for (int c = 0; c < D; ++c) p[node_stride<D> * l + c] = v.c[c][l];
     for (int c = D; c < node_stride<D>; ++c) p[node_stride<D> * l + c] = 0.0F;
   }
