@@ -29,19 +29,6 @@ Triangle<D> triangle_of(const typename Resistance<D>::Block& block) {
   return w;
 }
 
-template <int D>
-Triangle<D> weight_of(const Resistance<D>& resistance, const typename Resistance<D>::Link& link) {
-  const Vec<D>& g = resistance.g(link);
-  typename Resistance<D>::Block z;
-  for (std::size_t row = 0; row < D; ++row)
-    for (std::size_t col = 0; col < D; ++col) z[row * D + col] = g.x[row] * g.x[col];
-  if (resistance.transverse()) {
-    for (double& entry : z) entry *= resistance.across(link).sign;
-    for (std::size_t c = 0; c < D; ++c) z[c * D + c] += resistance.across(link).zeta_perp;
-  }
-  return triangle_of<D>(z);
-}
-
 /// One matrix per cell over its corners, added up to the stencil in the end.
 template <int D>
 class Elements {
@@ -60,6 +47,8 @@ class Elements {
     sums_.fill(0.0F);
     view_.elements = sums_.data();
     place_nodes();
+    if (!resistance.g().empty()) edges_.g = resistance.g().front().x.data();
+    if (resistance.transverse()) edges_.across = &resistance.across().front().zeta_perp;
   }
   void add_node(std::int64_t n);
   void add_to(GridOperator<D>& a) const;
@@ -68,7 +57,6 @@ class Elements {
   static constexpr int corners = GridShape<D>::corners;
   static constexpr int triangle = GridShape<D>::triangle;
   static constexpr int size = element_floats<D>;
-  static constexpr std::size_t most_links = 64;  // handed over at once
 
   void place_nodes() {
     positions_.resize(4 * resistance_.nodes());
@@ -84,32 +72,22 @@ class Elements {
   const GridShape<D>& shape_;
   const Resistance<D>& resistance_;
   ElementView view_{};
+  EdgeView edges_{};
   FloatArray positions_, sums_;
 };
 
-/// The edges of node n with higher ones, and what holds it.
+/// The node's half of its edges, and what holds it.
 template <int D>
 void Elements<D>::add_node(std::int64_t n) {
+  static_assert(sizeof(typename Resistance<D>::Link) == 2 * sizeof(std::int32_t));
+  static_assert(sizeof(typename Resistance<D>::Across) == 2 * sizeof(double));
   const auto node = static_cast<std::size_t>(n);
-  std::array<std::int32_t, most_links> other;
-  std::array<float, 6 * most_links> weight;
-  std::size_t count = 0;
-  const auto hand_over = [&] {
-    multilevel_kernels().add_edges[D - 2](view_, n, static_cast<std::int64_t>(count), other.data(),
-                                          weight.data());
-    count = 0;
-  };
-  for (const auto& link : resistance_.links(node)) {
-    if (link.node < n) continue;
-    const Triangle<D> w = weight_of<D>(resistance_, link);
-    std::copy(w.begin(), w.end(), weight.begin() + static_cast<std::ptrdiff_t>(6 * count));
-    other[count++] = link.node;
-    if (count == most_links) hand_over();
-  }
-  if (count > 0) hand_over();
-  if (resistance_.anchors().empty()) return;
-  const Triangle<D> w = triangle_of<D>(resistance_.anchors()[node]);
-  multilevel_kernels().add_point[D - 2](view_, n, w.data());
+  const auto links = resistance_.links(node);
+  Triangle<D> anchor{};
+  if (!resistance_.anchors().empty()) anchor = triangle_of<D>(resistance_.anchors()[node]);
+  multilevel_kernels().add_node[D - 2](
+      view_, edges_, n, reinterpret_cast<const std::int32_t*>(links.data()), std::ssize(links),
+      resistance_.anchors().empty() ? nullptr : anchor.data());
 }
 
 template <int D>

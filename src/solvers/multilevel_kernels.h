@@ -31,10 +31,17 @@ struct ElementView {
   float* elements;
 };
 
+/// The friction of edges: per edge D numbers g and, with friction across e (null: none), zeta_perp and the sign of
+/// zeta_par - zeta_perp.
+struct EdgeView {
+  const double* g;
+  const double* across;
+};
+
 template <int D>
 inline constexpr int element_floats = D == 2 ? 3 * 16 : 6 * 40;
 
-/// Of entry (n, m) for the number w in the triangle: blocks of 16 floats, in 3D of s = 0 and 1, of s = 2 and 3, half ones of 4.
+/// Of entry (n, m) for the number w in the triangle: lanes n of s = 0, 1, ...
 template <int D>
 constexpr int element_place(int w, int n, int m) {
   constexpr int corners = 1 << D, triangle = D * (D + 1) / 2;
@@ -43,9 +50,7 @@ constexpr int element_place(int w, int n, int m) {
     s = corners - s;
     n = m;
   }
-  if (s == 4) return triangle * 32 + w * 8 + n;
-  const int block = s * corners / 16;
-  return (block * triangle + w) * 16 + s * corners % 16 + n;
+  return w * (element_floats<D> / triangle) + s * corners + n;
 }
 
 struct CgSums {
@@ -76,11 +81,11 @@ struct MultilevelKernels {
   /// w = keep y - step D^-1 w; returns y . w, with w as it was.
   double (*local[2])(const float* inverse, float keep, float step, const float* y, float* w,
                      std::int64_t first, std::int64_t last);
-  /// Adds t_n t_m W to the elements of cells. For the edges of a node: `other` its
-  /// neighbours, six floats of W each, t_n = d . grad N_n at the edge's midpoint. For the node itself: t_n = N_n.
-  void (*add_edges[2])(const ElementView&, std::int64_t node, std::int64_t count,
-                       const std::int32_t* other, const float* weight);
-  void (*add_point[2])(const ElementView&, std::int64_t node, const float* weight);
+  /// Adds to the element of the node's cell, with the gradients of N at the node,
+  /// half of sum_links (d . grad N_n) (d . grad N_m) W, d = r - r_other in units of the spacing, and N_n N_m `anchor`
+  /// (a triangle; null: none). `link`: per link its edge and its other node.
+  void (*add_node[2])(const ElementView&, const EdgeView&, std::int64_t node,
+                      const std::int32_t* link, std::int64_t links, const float* anchor);
   void (*dense)(const float* matrix, std::int64_t size, const float* x, float* y);
 };
 

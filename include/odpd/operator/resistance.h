@@ -71,6 +71,9 @@ class Resistance : public System {
   const Across& across(const Link& link) const {
     return across_[static_cast<std::size_t>(link.edge)];
   }
+  /// Of all edges of the network; friction across e may be empty.
+  std::span<const Vec<D>> g() const { return g_; }
+  std::span<const Across> across() const { return across_; }
   /// Friction of each node with particles of known velocity, and the shift (empty: none).
   std::span<const Block> anchors() const { return anchor_; }
   std::span<const Block> diagonal() const { return diagonal_; }

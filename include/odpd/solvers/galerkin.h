@@ -1,10 +1,11 @@
 #pragma once
-// The resistance operator seen from a grid: P^T R P with multilinear P, where an edge sees the gradient at its midpoint,
+// The resistance operator seen from a grid: P^T R P with multilinear P, where each half of an edge sees the gradient at its end,
 //
-//   v_i - v_j  ->  sum over the corners n of the midpoint's cell  (d . grad N_n) v_n,   d = r_i - r_j
+//   v_i - v_j  ->  sum over the corners n of the particle's cell  (d . grad N_n) v_n,   d = r_i - r_j
 //
-// which is exact for velocities linear in space and keeps the stencil at 3^D points. Friction with particles of known
-// velocity and the shift act at the particle's own position.
+// which is exact for velocities linear in space and keeps the stencil at 3^D points; all edges of a particle share one
+// gradient, so that they are added up before the cell sees them. Friction with particles of known velocity and the shift act
+// at the particle's own position.
 #include "odpd/solvers/multigrid.h"
 
 namespace odpd {
