@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "multilevel_kernels.h"
 #include "odpd/core/parallel.h"
@@ -223,18 +224,24 @@ std::vector<std::vector<CoarseningPath>> coarsening_paths(const GridShape<D>& sh
   return paths;
 }
 
-/// The fine point that stencil entry `side` leads to from a coarse one; false: outside.
+/// The number of the coarse point from which stencil entry `side` leads to a fine one; negative: there is none.
 template <int D>
-bool fine_point(const GridShape<D>& shape, int side, typename GridShape<D>::Index& point) {
-  for (int c = 0; c < D; ++c, side /= 3) {
-    auto& x = point[static_cast<std::size_t>(c)];
-    x = x * (shape.coarsened(c) ? 2 : 1) + side % 3 - 1;
+std::int64_t coarse_point(const GridShape<D>& shape, const GridShape<D>& coarse, int side,
+                          const typename GridShape<D>::Index& fine) {
+  std::int64_t number = 0, unit = 1;
+  for (int c = 0; c < D; unit *= coarse.points(c), ++c, side /= 3) {
+    std::int64_t x = fine[static_cast<std::size_t>(c)] - (side % 3 - 1);
+    if (shape.coarsened(c)) {
+      if (x % 2 != 0) return -1;
+      x /= 2;
+    }
     if (shape.periodic[static_cast<std::size_t>(c)])
-      x = (x + shape.points(c)) % shape.points(c);
-    else if (x < 0 || x >= shape.points(c))
-      return false;
+      x = (x + coarse.points(c)) % coarse.points(c);
+    else if (x < 0 || x >= coarse.points(c))
+      return -1;
+    number += unit * x;
   }
-  return true;
+  return number;
 }
 
 }  // namespace
@@ -247,21 +254,27 @@ GridOperator<D> GridOperator<D>::coarsened() const {
   constexpr std::size_t entries = GridShape<D>::entries, triangle = GridShape<D>::triangle,
                         padded = D == 2 ? 4 : 8;
   using Stencil = std::array<std::array<float, padded>, entries>;
-  for_each_point(coarse.shape_, [&](const auto& point) {
-    Stencil sum{}, from{};
-    for (int side = 0; side < GridShape<D>::entries; ++side) {
-      auto fine = point;
-      if (paths[static_cast<std::size_t>(side)].empty() || !fine_point(shape_, side, fine))
-        continue;
-      const float* const blocks = block(shape_.place(fine), 0);
-      for (std::size_t n = 0; n < entries; ++n)
-        for (std::size_t k = 0; k < triangle; ++k) from[n][k] = blocks[(n * triangle + k) * group];
-      for (const CoarseningPath& path : paths[static_cast<std::size_t>(side)]) {
+  std::vector<Stencil> sums(static_cast<std::size_t>(coarse.shape_.points()));
+  Stencil from{};
+  for_each_point(shape_, [&](const auto& fine) {
+    const float* const blocks = block(shape_.place(fine), 0);
+    for (std::size_t n = 0; n < entries; ++n)
+      for (std::size_t k = 0; k < triangle; ++k) from[n][k] = blocks[(n * triangle + k) * group];
+    for (std::size_t side = 0; side < entries; ++side) {
+      if (paths[side].empty()) continue;
+      const std::int64_t number = coarse_point(shape_, coarse.shape_, static_cast<int>(side), fine);
+      if (number < 0) continue;
+      Stencil& sum = sums[static_cast<std::size_t>(number)];
+      for (const CoarseningPath& path : paths[side]) {
         const auto& a = from[static_cast<std::size_t>(path.neighbour)];
         auto& b = sum[static_cast<std::size_t>(path.coarse)];
         for (std::size_t k = 0; k < padded; ++k) b[k] += path.weight * a[k];
       }
     }
+  });
+  std::size_t number = 0;
+  for_each_point(coarse.shape_, [&](const auto& point) {
+    const Stencil& sum = sums[number++];
     float* const into = coarse.block(coarse.shape_.place(point), 0);
     for (std::size_t n = 0; n < entries; ++n)
       for (std::size_t k = 0; k < triangle; ++k) into[(n * triangle + k) * group] = sum[n][k];
