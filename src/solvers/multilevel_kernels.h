@@ -21,8 +21,8 @@ struct TransferView {
   std::int64_t corner[8];  ///< offsets of the cell's corners from the lowest one, x fastest
 };
 
-/// Matrices of the cells of a grid, and the nodes that are seen from it. An element is the sum of t_n t_m W over corners n, m
-/// and the triangle of W. It is symmetric in n and m: only m = n + s modulo 2^D with s <= 4 is kept, at `element_place`.
+/// Matrices of the cells of a grid, and the nodes that are seen from it. An element holds the D x D blocks, as triangles, of
+/// the corners n, m of its cell. It is symmetric in n and m: only m = n + s modulo 2^D with s <= 4 is kept, at `element_place`.
 struct ElementView {
   const float* position;   ///< per node four floats, in units of the spacing from the first point
   float cells[4];          ///< per direction; 1 in the unused ones

@@ -6,6 +6,7 @@
 #include "odpd/solvers/galerkin.h"
 #include "solvers/resistance_toys.h"
 #include "support/dimensions.h"
+#include "support/points.h"
 
 namespace {
 
@@ -107,6 +108,166 @@ TYPED_TEST(Grid, TheOperatorIsExactForLinearVelocities) {
       a = a.coarsened();
     }
   }
+}
+
+template <int D>
+using PointValues = std::vector<odpd::Vec<D>>;  // in the order of for_each_point
+
+template <int D>
+std::size_t number_of(const GridShape<D>& shape, typename GridShape<D>::Index point) {
+  std::int64_t number = 0;
+  for (int c = D - 1; c >= 0; --c) {
+    const auto i = static_cast<std::size_t>(c);
+    if (shape.periodic[i]) point[i] %= shape.points(c);
+    number = number * shape.points(c) + point[i];
+  }
+  return static_cast<std::size_t>(number);
+}
+
+/// x^T A x by the operator.
+template <int D>
+double energy_of(const GridOperator<D>& a, const PointValues<D>& values) {
+  const GridShape<D>& shape = a.shape();
+  odpd::FloatArray x, b, r;
+  for (odpd::FloatArray* f : {&x, &b, &r}) {
+    f->resize(D * shape.pitch());
+    f->fill(0.0F);
+  }
+  const auto at = [&](odpd::FloatArray& f, const auto& point, int c) -> float& {
+    return f.data()[shape.margin() + c * shape.pitch() + shape.place(point)];
+  };
+  std::size_t k = 0;
+  odpd::for_each_point(shape, [&](const auto& point) {
+    for (int c = 0; c < D; ++c) at(x, point, c) = static_cast<float>(values[k][c]);
+    ++k;
+  });
+  a.residual(b.data(), x.data(), r.data());
+  double energy = 0.0;
+  odpd::for_each_point(shape, [&](const auto& point) {
+    for (int c = 0; c < D; ++c)
+      energy -= static_cast<double>(at(x, point, c)) * static_cast<double>(at(r, point, c));
+  });
+  return energy;
+}
+
+/// The same by definition (solvers/galerkin.h): each half of an edge with the gradient at its end.
+template <int D>
+double energy_by_half_edges(const odpd::Resistance<D>& resistance, const GridShape<D>& shape,
+                            const PointValues<D>& values) {
+  double energy = 0.0;
+  const auto position = [&](std::size_t n) {
+    odpd::Vec<D> r;
+    for (std::size_t c = 0; c < D; ++c) r.x[c] = resistance.positions()[n * D + c];
+    return r;
+  };
+  for (std::size_t n = 0; n < static_cast<std::size_t>(resistance.nodes()); ++n) {
+    const odpd::GridPosition<D> at =
+        odpd::locate(shape, odpd::grid_position(resistance, n).x.data());
+    odpd::Vec<D> value, slope[D];
+    for (int corner = 0; corner < GridShape<D>::corners; ++corner) {
+      auto point = at.cell;
+      double hat[D], weight = 1.0;
+      for (int c = 0; c < D; ++c) {
+        const auto i = static_cast<std::size_t>(c);
+        const bool high = (corner >> c) % 2 == 1;
+        point[i] += high ? 1 : 0;
+        hat[c] = static_cast<double>(high ? at.in_cell[i] : 1.0F - at.in_cell[i]);
+        weight *= hat[c];
+      }
+      const odpd::Vec<D>& u = values[number_of(shape, point)];
+      value += weight * u;
+      for (int c = 0; c < D; ++c) {
+        double w = (corner >> c) % 2 == 1 ? 1.0 : -1.0;
+        for (int other = 0; other < D; ++other) w *= other == c ? 1.0 : hat[other];
+        slope[c] += w * u;
+      }
+    }
+    for (const auto& link : resistance.links(n)) {
+      const odpd::Vec<D> d =
+          resistance.box().separation(position(n), position(static_cast<std::size_t>(link.node)));
+      odpd::Vec<D> slip;
+      for (int c = 0; c < D; ++c) slip += d[c] * shape.per_length[c] * slope[c];
+      const double along = dot(resistance.g(link), slip);
+      const bool across = resistance.transverse();
+      energy += 0.5 * (across ? resistance.across(link).sign : 1.0) * along * along;
+      if (across) energy += 0.5 * resistance.across(link).zeta_perp * dot(slip, slip);
+    }
+    if (resistance.anchors().empty()) continue;
+    for (std::size_t row = 0; row < D; ++row)
+      for (std::size_t col = 0; col < D; ++col)
+        energy += value.x[row] * resistance.anchors()[n][row * D + col] * value.x[col];
+  }
+  return energy;
+}
+
+template <int D>
+PointValues<D> random_values(const GridShape<D>& shape) {
+  return support::random_vectors<D>(static_cast<std::size_t>(shape.points()), 11);
+}
+
+TYPED_TEST(Grid, TheOperatorIsTheSumOverHalvesOfEdges) {
+  constexpr int D = TypeParam::D;
+  for (const toys::Ends ends : {toys::Ends::periodic, toys::Ends::walls, toys::Ends::open})
+    for (const double gamma_perp : {0.0, 1.5, 9.0}) {  // the last above gamma
+      const toys::RandomFluid<D> toy(800, ends, 0.3, gamma_perp);
+      const GridShape<D> shape = grid_of(toy, 1.3);
+      const PointValues<D> values = random_values(shape);
+      const double exact = energy_by_half_edges(toy.resistance, shape, values);
+      EXPECT_NEAR(energy_of(odpd::galerkin(toy.resistance, shape), values), exact, 2e-5 * exact)
+          << static_cast<int>(ends) << ' ' << gamma_perp;
+    }
+}
+
+/// A coarse grid's values on the finer one, multilinear.
+template <int D>
+PointValues<D> refined(const GridShape<D>& coarse, const GridShape<D>& fine,
+                       const PointValues<D>& values) {
+  PointValues<D> result;
+  odpd::for_each_point(fine, [&](const auto& point) {
+    odpd::Vec<D> sum;
+    for (int corner = 0; corner < GridShape<D>::corners; ++corner) {
+      auto at = point;
+      double weight = 1.0;
+      for (int c = 0; c < D; ++c) {
+        const auto i = static_cast<std::size_t>(c);
+        const bool high = (corner >> c) % 2 == 1;
+        if (!fine.coarsened(c) || point[i] % 2 == 0) {
+          weight *= high ? 0.0 : 1.0;
+          at[i] = fine.coarsened(c) ? point[i] / 2 : point[i];
+        } else {
+          weight *= 0.5;
+          at[i] = point[i] / 2 + (high ? 1 : 0);
+        }
+      }
+      if (weight > 0.0) sum += weight * values[number_of(coarse, at)];
+    }
+    result.push_back(sum);
+  });
+  return result;
+}
+
+TYPED_TEST(Grid, CoarseOperatorsAreThoseOfTheirValuesOnTheFineGrid) {
+  constexpr int D = TypeParam::D;
+  const toys::RandomFluid<D> toy(300, toys::Ends::periodic, 0.3);
+  using Index = typename GridShape<D>::Index;
+  for (const Index& cells : {Index{2, 3}, Index{1, 4}, Index{4, 6}, Index{6, 2}})
+    for (const bool bounded : {false, true}) {
+      Index all = cells;
+      std::array<bool, D> periodic{};
+      periodic.fill(true);
+      if (D == 3) all.back() = 4;
+      periodic.front() = !bounded;
+      GridOperator<D> a = odpd::galerkin(
+          toy.resistance, GridShape<D>({}, toy.resistance.box().size, all, periodic));
+      for (int level = 0; level < 2; ++level) {
+        const GridOperator<D> coarse = a.coarsened();
+        const PointValues<D> values = random_values(coarse.shape());
+        const double exact = energy_of(a, refined(coarse.shape(), a.shape(), values));
+        EXPECT_NEAR(energy_of(coarse, values), exact, 2e-5 * exact)
+            << cells[0] << ' ' << cells[1] << ' ' << bounded << ' ' << level;
+        a = a.coarsened();
+      }
+    }
 }
 
 template <int D>

@@ -3,7 +3,7 @@
 // equilibrium is known, evenly spread, so that they can start there anew for every window of time: Einstein's relation
 // then holds over a window of any length t,
 //
-//   <x(t)^2>/(2 t) = kT <x(t)>_F/(F t)
+//   <|r(t)|^2>/(2 d t) = kT <r(t)>_F . F/(F^2 t)
 //
 // (Kubo 1966, fluctuation-dissipation theorem, in time), although both sides fall with t as long as a body has not seen
 // much of the box. The same noise drives a window with +F and with -F.
@@ -27,17 +27,18 @@ struct Transport {
 
 constexpr std::size_t einstein_bodies = 400;
 
-/// A force along x and a torque that turns every second body the other way, so that force and rotation do not mix.
+/// A force and a torque that turns every second body the other way, so that force and rotation do not mix.
 class PushedBodies : public NoSurroundings<2> {
  public:
-  PushedBodies(double force, double torque) : force_(force), torque_(torque) {}
+  PushedBodies(const Vec<2>& force, double torque) : force_(force), torque_(torque) {}
   static double turn(std::size_t body) { return body % 2 == 0 ? 1.0 : -1.0; }
   RigidLoad<2> body_load(std::size_t body, double) const override {
-    return {{{force_, 0.0}}, {{turn(body) * torque_}}};
+    return {force_, {{turn(body) * torque_}}};
   }
 
  private:
-  double force_, torque_;
+  Vec<2> force_;
+  double torque_;
 };
 
 /// Displacement and rotation of each body over a window.
@@ -57,7 +58,8 @@ struct Paths {
 };
 
 /// Bodies of three particles, elsewhere in each window, among the same 1600 frozen ones in a box of 20 x 20.
-inline Paths follow(std::uint64_t window, double force, double torque, double dt, double time) {
+inline Paths follow(std::uint64_t window, const Vec<2>& force, double torque, double dt,
+                    double time) {
   const Box<2> box{{{20.0, 20.0}}, {true, true}};
   Particles<2> particles;
   RigidBody<2> body;
@@ -101,23 +103,26 @@ inline Transport mean_of(const std::vector<double>& windows) {
   return result;
 }
 
-/// Of translation and of rotation.
+/// Of translation and of rotation. The error of the ratio is that of D - ratio kT mu, window by window: they share their noise.
 struct EinsteinSides {
-  std::array<Transport, 2> diffusion, mobility;
+  std::array<Transport, 2> diffusion, mobility, ratio;
 };
 
 inline EinsteinSides einstein_sides(std::uint64_t windows, double force, double torque, double dt,
                                     double time) {
   std::array<std::vector<double>, 2> diffusion, mobility;
   for (std::uint64_t w = 0; w < windows; ++w) {
-    const Paths free = follow(w, 0.0, 0.0, dt, time);
-    const Paths there = follow(w, force, torque, dt, time);
-    const Paths back = follow(w, -force, -torque, dt, time);
+    const int along = static_cast<int>(w % 2);  // the frozen particles need not be isotropic
+    Vec<2> push;
+    push[along] = force;
+    const Paths free = follow(w, {}, 0.0, dt, time);
+    const Paths there = follow(w, push, torque, dt, time);
+    const Paths back = follow(w, -1.0 * push, -torque, dt, time);
     double way = 0.0, angle = 0.0, drift = 0.0, spin = 0.0;
     for (std::size_t b = 0; b < einstein_bodies; ++b) {
       way += dot(free.way[b], free.way[b]);
       angle += free.angle[b] * free.angle[b];
-      drift += there.way[b][0] - back.way[b][0];
+      drift += there.way[b][along] - back.way[b][along];
       spin += PushedBodies::turn(b) * (there.angle[b] - back.angle[b]);
     }
     constexpr auto bodies = static_cast<double>(einstein_bodies);
@@ -126,8 +131,17 @@ inline EinsteinSides einstein_sides(std::uint64_t windows, double force, double 
     mobility[0].push_back(drift / (2.0 * force * time * bodies));
     mobility[1].push_back(spin / (2.0 * torque * time * bodies));
   }
-  return {{mean_of(diffusion[0]), mean_of(diffusion[1])},
-          {mean_of(mobility[0]), mean_of(mobility[1])}};
+  EinsteinSides sides;
+  for (std::size_t k = 0; k < 2; ++k) {
+    sides.diffusion[k] = mean_of(diffusion[k]);
+    sides.mobility[k] = mean_of(mobility[k]);
+    sides.ratio[k].value = sides.diffusion[k].value / sides.mobility[k].value;
+    std::vector<double> excess = diffusion[k];
+    for (std::size_t w = 0; w < excess.size(); ++w)
+      excess[w] -= sides.ratio[k].value * mobility[k][w];
+    sides.ratio[k].standard_error = mean_of(excess).standard_error / sides.mobility[k].value;
+  }
+  return sides;
 }
 
 }  // namespace support
