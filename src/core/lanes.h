@@ -225,6 +225,18 @@ inline NodeLanes<D> gather_nodes(const float* p, const std::int32_t* offset) {
 
 #endif
 
+/// y += S x, S symmetric: its upper triangle row by row at `s`, sixteen floats per entry.
+template <int D>
+inline void add_symmetric(const float* s, const NodeLanes<D>& x, NodeLanes<D>& y) {
+  for (int row = 0; row < D; ++row)
+    for (int col = row; col < D; ++col) {
+      const Floats entry = load(s);
+      s += lanes;
+      y.c[row] += entry * x.c[col];
+      if (col != row) y.c[col] += entry * x.c[row];
+    }
+}
+
 /// Writes `width` nodes; the unused component of a node in 3D becomes zero.
 template <int D>
 inline void store_nodes(float* p, const NodeLanes<D>& v) {

@@ -79,6 +79,7 @@ class Elements {
 /// The node's half of its edges, and what holds it.
 template <int D>
 void Elements<D>::add_node(std::int64_t n) {
+  static_assert(sizeof(Vec<D>) == D * sizeof(double));  // EdgeView reads them as numbers
   static_assert(sizeof(typename Resistance<D>::Link) == 2 * sizeof(std::int32_t));
   static_assert(sizeof(typename Resistance<D>::Across) == 2 * sizeof(double));
   const auto node = static_cast<std::size_t>(n);
