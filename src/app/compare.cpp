@@ -77,7 +77,7 @@ FrozenProblem<D> freeze(Simulation<D>& simulation, std::int64_t steps) {
   problem.b = dynamics.force(stage);
   const double inertia = dynamics.inertia(clock.dt);
   const std::vector<double> momentum =
-      dynamics.times_inertia(stage, dynamics.end_velocity(stage), inertia);
+      dynamics.motion().times_inertia(stage, dynamics.motion().end_velocity(stage), inertia);
   for (std::size_t k = 0; k < problem.b.size(); ++k) problem.b[k] += xi[k] + momentum[k];
   for (RigidResistance<D>* r : {&problem.as_posed, &problem.held})
     r->rebuild(stage.network, dynamics.dofs(), dynamics.particles(), stage.position, stage.arms,

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "odpd/core/error.h"
 #include "odpd/core/log.h"
@@ -15,10 +14,6 @@
 namespace odpd {
 
 namespace {
-
-// Particles that one thread takes at a time.
-constexpr std::int64_t range = 1024;
-std::size_t ranges(std::int64_t n) { return static_cast<std::size_t>((n + range - 1) / range); }
 
 // P^T A P q where `add` adds the forces - A v of the edges.
 template <int D, class Add>
@@ -43,17 +38,12 @@ Dynamics<D>::Dynamics(const Box<D>& box, Particles<D>& particles, const PairMode
       particles_(particles),
       model_(model),
       surroundings_(surroundings),
+      motion_(box, particles, surroundings),
       solver_(std::move(solver)),
       settings_(settings),
       list_(box, model.cutoff(), settings.skin),
       resistance_(box, settings.hold_centre_of_mass) {
   if (has_mass()) particles_.carry_inertia();
-}
-
-template <int D>
-const DofMap<D>& Dynamics<D>::dofs() {
-  if (!dofs_) dofs_ = std::make_unique<DofMap<D>>(particles_);
-  return *dofs_;
 }
 
 template <int D>
@@ -66,39 +56,21 @@ void Dynamics<D>::reorder_if_due(std::int64_t step) {
 
 template <int D>
 void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage<D>& stage) {
-  const auto n = static_cast<std::int64_t>(positions.size());
-  stage.time = time;
-  stage.box = box_.at(time);
-  for (auto* column :
-       {&stage.position, &stage.potential_force, &stage.driving_force, &stage.velocity})
-    column->resize(positions.size());
-  std::vector<char> lost(ranges(n), 0);
-  parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      stage.position[i] = positions[i];
-      stage.potential_force[i] = stage.driving_force[i] = Vec<D>{};
-      stage.velocity[i] = particles_.is_known(i) && particles_.body_of(i) < 0
-                              ? surroundings_.known_velocity(particles_.group[i], time)
-                              : Vec<D>{};
-      if (!finite(positions[i])) lost[static_cast<std::size_t>(begin / range)] = 1;
-    }
-  });
-  if (std::count(lost.begin(), lost.end(), 1) > 0)
-    for (std::size_t i = 0; i < positions.size(); ++i)
-      if (!finite(positions[i]))
-        throw BlowUpError(fmt::format("the position of particle {} at t = {:.6g} is not finite",
-                                      particles_.id[i], time),
-                          particles_.id[i]);
   {
     const PhaseTimer timer(phases_, Phase::neighbours);
-    wrap_sheared(stage);
-    if (!particles_.bodies.empty()) place_arms(stage);
+    motion_.locate(positions, time, stage);
     list_.slide(stage.box);
     list_.update(stage.position);
   }
   const PhaseTimer timer(phases_, Phase::edges);
   model_.write_edges(list_, stage.box, stage.position, particles_, stage.network);
   write_slips(stage);
+  stage.potential_force.resize(positions.size());
+  stage.driving_force.resize(positions.size());
+  parallel_for(static_cast<std::int64_t>(positions.size()), [&](std::int64_t particle) {
+    const auto i = static_cast<std::size_t>(particle);
+    stage.potential_force[i] = stage.driving_force[i] = Vec<D>{};
+  });
   if (model_.conservative()) add_conservative_forces(stage.network, stage.potential_force);
   surroundings_.add_potential_forces(particles_, stage.position, stage.potential_force);
   surroundings_.add_driving_forces(particles_, stage.position, time, stage.driving_force);
@@ -110,7 +82,7 @@ auto Dynamics<D>::draw_noise(const Stage<D>& stage, std::int64_t step, double dt
   const PhaseTimer timer(phases_, Phase::noise);
   if (!model_.thermal()) {
     edge_noise.clear();
-    return Unknowns(static_cast<std::size_t>(dofs().unknowns()), 0.0);
+    return Unknowns(static_cast<std::size_t>(motion_.dofs().unknowns()), 0.0);
   }
   draw_edge_noise(stage.network, particles_, settings_.seed, static_cast<std::uint64_t>(step), dt,
                   edge_noise);
@@ -120,7 +92,7 @@ auto Dynamics<D>::draw_noise(const Stage<D>& stage, std::int64_t step, double dt
     add_drag_noise(particles_, settings_.seed, static_cast<std::uint64_t>(step),
                    std::sqrt(2.0 * settings_.kT * settings_.zeta_0 / dt), force);
   Unknowns xi;
-  dofs().gather(stage.arms, force, xi);
+  motion_.dofs().gather(stage.arms, force, xi);
   return xi;
 }
 
@@ -132,7 +104,7 @@ auto Dynamics<D>::force(const Stage<D>& stage) -> Unknowns {
     const auto i = static_cast<std::size_t>(particle);
     force[i] = stage.potential_force[i] + stage.driving_force[i];
   });
-  if (dofs().sites() < dofs().particles()) {
+  if (motion_.dofs().sites() < motion_.dofs().particles()) {
     std::vector<std::int32_t> known;
     std::vector<Vec<D>> velocity = stage.velocity;
     for (std::size_t i = 0; i < velocity.size(); ++i) {
@@ -146,12 +118,12 @@ auto Dynamics<D>::force(const Stage<D>& stage) -> Unknowns {
   }
   add_sliding_friction(stage.network, force);
   Unknowns f;
-  dofs().gather(stage.arms, force, f);
-  for (std::size_t b = 0; b < static_cast<std::size_t>(dofs().bodies()); ++b) {
+  motion_.dofs().gather(stage.arms, force, f);
+  for (std::size_t b = 0; b < static_cast<std::size_t>(motion_.dofs().bodies()); ++b) {
     const RigidLoad<D> load = surroundings_.body_load(b, stage.time);
     for (std::size_t c = 0; c < D; ++c) {
       f[b * D + c] += load.torque.x[c];
-      f[dofs().body_node(b) * D + c] += load.force.x[c];
+      f[motion_.dofs().body_node(b) * D + c] += load.force.x[c];
     }
   }
   return f;
@@ -160,26 +132,26 @@ auto Dynamics<D>::force(const Stage<D>& stage) -> Unknowns {
 template <int D>
 auto Dynamics<D>::friction(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
   const PhaseTimer timer(phases_, Phase::assembly);
-  return resisted(stage, dofs(), q, add_friction_forces<D>);
+  return resisted(stage, motion_.dofs(), q, add_friction_forces<D>);
 }
 
 template <int D>
 auto Dynamics<D>::spring(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
   const PhaseTimer timer(phases_, Phase::assembly);
-  return resisted(stage, dofs(), q, add_spring_forces<D>);
+  return resisted(stage, motion_.dofs(), q, add_spring_forces<D>);
 }
 
 template <int D>
 auto Dynamics<D>::bond_spring(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
   const PhaseTimer timer(phases_, Phase::assembly);
-  return resisted(stage, dofs(), q, add_bond_springs<D>);
+  return resisted(stage, motion_.dofs(), q, add_bond_springs<D>);
 }
 
 template <int D>
 auto Dynamics<D>::total_force(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
   Unknowns f = force(stage);
   const Unknowns drag = friction(stage, q);
-  const Unknowns background = times_inertia(stage, q, settings_.zeta_0);
+  const Unknowns background = motion_.times_inertia(stage, q, settings_.zeta_0);
   for (std::size_t k = 0; k < f.size(); ++k) f[k] -= drag[k] + background[k];
   return f;
 }
@@ -188,7 +160,7 @@ template <int D>
 const System& Dynamics<D>::assemble(const Stage<D>& stage, const StepWeights& weights) {
   const PhaseTimer timer(phases_, Phase::assembly);
   resistance_.slide(stage.box);
-  resistance_.rebuild(stage.network, dofs(), particles_, stage.position, stage.arms,
+  resistance_.rebuild(stage.network, motion_.dofs(), particles_, stage.position, stage.arms,
                       weights.inertia + settings_.zeta_0, weights.stiffness_time,
                       weights.bond_time);
   if (weights.stiffness_time > 0.0)
@@ -234,134 +206,15 @@ void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights
   }
   note(stage.report);
   const double shift = weights.inertia + settings_.zeta_0;
-  if (shift > 0.0 && !guess.empty() && dofs().nodes() == dofs().particles() &&
+  if (shift > 0.0 && !guess.empty() && motion_.dofs().nodes() == motion_.dofs().particles() &&
       particles_.bodies.empty() && !system.holds_centre_of_mass())
     balance_momentum(load, shift, guess);
   if (box_.shear && system.translations_are_null()) add_mean_flow(stage, guess);
-  stage.velocity = velocities(stage, guess);
+  stage.velocity = motion_.velocities(stage, guess);
   for (std::size_t i = 0; i < stage.velocity.size(); ++i)
     if (!finite(stage.velocity[i]))
       throw BlowUpError(fmt::format("the velocity of particle {} is not finite", particles_.id[i]),
                         particles_.id[i]);
-}
-
-template <int D>
-auto Dynamics<D>::end_velocity(const Stage<D>& stage) -> Unknowns {
-  if (!has_mass()) return Unknowns(static_cast<std::size_t>(dofs().unknowns()), 0.0);
-  Unknowns q;
-  dofs().gather(stage.arms, particles_.end_velocity, q);
-  dofs().divide_by_inertia(stage.arms, q);
-  return q;
-}
-
-template <int D>
-void Dynamics<D>::set_end_momentum(const Unknowns& p) {
-  const std::vector<Vec<D>> known = particles_.end_velocity;
-  Unknowns q = p;
-  std::vector<Vec<D>> arms;
-  if (dofs().bodies() > 0) arms = arms_at(moved_in_, particles_.position);
-  dofs().divide_by_inertia(arms, q);
-  cross_faces(q);
-  dofs().scatter(arms, q, known, particles_.end_velocity);
-}
-
-template <int D>
-auto Dynamics<D>::times_inertia(const Stage<D>& stage, const Unknowns& q, double inertia)
-    -> Unknowns {
-  Unknowns l = q;
-  if (dofs().bodies() > 0) {
-    std::vector<Vec<D>> velocity;
-    dofs().scatter(stage.arms, q, std::vector<Vec<D>>(stage.position.size()), velocity);
-    dofs().gather(stage.arms, velocity, l);
-  }
-  for (double& value : l) value *= inertia;
-  return l;
-}
-
-template <int D>
-std::vector<Vec<D>> Dynamics<D>::velocities(const Stage<D>& stage, const Unknowns& q) {
-  std::vector<Vec<D>> velocity;
-  dofs().scatter(stage.arms, q, stage.velocity, velocity);
-  return velocity;
-}
-
-template <int D>
-void Dynamics<D>::check_paths(const std::vector<Vec<D>>& velocity, double dt) const {
-  const auto n = static_cast<std::int64_t>(velocity.size());
-  const auto too_far = [&](std::size_t i, int c) {
-    return !(std::abs(dt * velocity[i][c]) < 0.5 * box_.size[c]);
-  };
-  std::vector<char> found(ranges(n), 0);
-  parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
-    bool any = false;
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-      for (int c = 0; c < D; ++c) any = any || too_far(i, c);
-    found[static_cast<std::size_t>(begin / range)] = any ? 1 : 0;
-  });
-  if (std::count(found.begin(), found.end(), 1) == 0) return;
-  for (std::size_t i = 0; i < velocity.size(); ++i)
-    for (int c = 0; c < D; ++c)
-      if (too_far(i, c))
-        throw BlowUpError(
-            fmt::format("particle {} would move {:.3g} in direction {}, more than half the "
-                        "box ({:.3g})",
-                        particles_.id[i], dt * velocity[i][c], "xyz"[c], box_.size[c]),
-            particles_.id[i]);
-}
-
-template <int D>
-std::vector<Vec<D>> Dynamics<D>::displaced(const std::vector<Vec<D>>& velocity, double dt, double t,
-                                           std::int64_t& crossings) {
-  check_paths(velocity, dt);
-  const auto n = static_cast<std::int64_t>(velocity.size());
-  std::vector<Vec<D>> r = particles_.position;
-  std::vector<std::int64_t> caught(ranges(n), 0);
-  parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      r[i] += dt * velocity[i];
-      if (!box_.shear) box_.wrap(r[i]);
-      if (particles_.is_free(i) && surroundings_.confine(r[i]))
-        ++caught[static_cast<std::size_t>(begin / range)];
-    }
-  });
-  for (const std::int64_t count : caught) crossings += count;
-  const Box<D> box = box_.at(t + dt);
-  for (std::size_t b = 0; b < particles_.bodies.size(); ++b) {
-    RigidPose<D> pose = particles_.bodies[b].pose;
-    if (advance(b, velocity, dt, box, pose)) place(b, pose, box, r, nullptr);
-  }
-  return r;
-}
-
-template <int D>
-std::int64_t Dynamics<D>::move(const std::vector<Vec<D>>& velocity, double dt, double t) {
-  check_paths(velocity, dt);
-  const Box<D> box = moved_in_ = box_.at(t + dt);
-  const std::vector<std::int32_t> images_before = moving_images();
-  std::vector<std::size_t> moved;
-  for (std::size_t b = 0; b < particles_.bodies.size(); ++b)
-    if (advance(b, velocity, dt, box, particles_.bodies[b].pose)) moved.push_back(b);
-  const auto n = static_cast<std::int64_t>(velocity.size());
-  std::vector<std::int64_t> caught(ranges(n), 0);
-  parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      particles_.position[i] += dt * velocity[i];
-      particles_.velocity[i] = velocity[i];
-      box.wrap(particles_.position[i], particles_.image[i]);
-      if (particles_.is_free(i) && surroundings_.confine(particles_.position[i]))
-        ++caught[static_cast<std::size_t>(begin / range)];
-    }
-  });
-  for (const std::size_t b : moved) {
-    place(b, particles_.bodies[b].pose, box, particles_.position, &particles_.image);
-    // The mirror does not turn bodies back: a constituent outside the box is an alarm.
-    for (const std::int32_t p : dofs().constituents(b)) {
-      Vec<D> r = particles_.position[static_cast<std::size_t>(p)];
-      if (surroundings_.confine(r)) ++caught.front();
-    }
-  }
-  leave_images(images_before);
-  return std::accumulate(caught.begin(), caught.end(), std::int64_t{0});
 }
 
 template class Dynamics<2>;

@@ -5,11 +5,12 @@ namespace odpd {
 template <int D>
 const StepRecord<D>& Extrapolated<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   auto& record = this->record_;
+  Motion<D>& motion = dynamics.motion();
   this->begin(dynamics, clock);
   const double inertia = dynamics.inertia(clock.dt);
   const double stiffness_time = theta_ * clock.dt;
-  std::vector<double> q = dynamics.end_velocity(record.start);
-  const std::vector<double> momentum = dynamics.times_inertia(record.start, q, inertia);
+  std::vector<double> q = motion.end_velocity(record.start);
+  const std::vector<double> momentum = motion.times_inertia(record.start, q, inertia);
   const std::vector<double> force = dynamics.force(record.start);
   std::vector<double> load =
       dynamics.draw_noise(record.start, clock.step, clock.dt, record.edge_noise);
@@ -30,11 +31,11 @@ const StepRecord<D>& Extrapolated<D>::step(Dynamics<D>& dynamics, const Clock& c
 
   const std::vector<double> drag = dynamics.friction(record.start, q);
   this->finish(dynamics, clock, q,
-               dynamics.has_mass() ? dynamics.times_inertia(record.start, q, 1.0) : q);
+               dynamics.has_mass() ? motion.times_inertia(record.start, q, 1.0) : q);
   std::vector<double> rest = force;
   for (std::size_t k = 0; k < q.size(); ++k) rest[k] -= drag[k];
   last_force_ = by_identity(dynamics, rest);
-  dynamics.cross_faces(q);
+  motion.cross_faces(q);
   last_velocity_ = by_identity(dynamics, q);
   return record;
 }

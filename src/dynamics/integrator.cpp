@@ -53,13 +53,14 @@ void Integrator<D>::begin(Dynamics<D>& dynamics, const Clock& clock) {
 template <int D>
 void Integrator<D>::finish(Dynamics<D>& dynamics, const Clock& clock, const Unknowns& q_mid,
                            const Unknowns& p_mid) {
-  record_.v_mid = dynamics.velocities(record_.start, q_mid);
-  record_.alarm_crossings += dynamics.move(record_.v_mid, clock.dt, clock.time());
+  Motion<D>& motion = dynamics.motion();
+  record_.v_mid = motion.velocities(record_.start, q_mid);
+  record_.alarm_crossings += motion.move(record_.v_mid, clock.dt, clock.time());
   if (!dynamics.has_mass()) return;
   // What goes on is momentum, linear and angular: in 3D moments of inertia turn with the body.
-  Unknowns p = dynamics.times_inertia(record_.start, dynamics.end_velocity(record_.start), 1.0);
+  Unknowns p = motion.times_inertia(record_.start, motion.end_velocity(record_.start), 1.0);
   for (std::size_t k = 0; k < p.size(); ++k) p[k] = 2.0 * p_mid[k] - p[k];
-  dynamics.set_end_momentum(p);
+  motion.set_end_momentum(p);
 }
 
 namespace {

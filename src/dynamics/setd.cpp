@@ -63,12 +63,13 @@ void advance(const Eigen::Matrix<double, D, D>& friction, double dt, double mass
 template <int D>
 const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   auto& record = this->record_;
+  Motion<D>& motion = dynamics.motion();
   this->begin(dynamics, clock);
   const double zeta_0 = dynamics.settings().zeta_0;
-  std::vector<double> v = dynamics.end_velocity(record.start);
+  std::vector<double> v = motion.end_velocity(record.start);
   const std::vector<double> xi =
       dynamics.draw_noise(record.start, clock.step, clock.dt, record.edge_noise);
-  record.start.velocity = dynamics.velocities(record.start, v);
+  record.start.velocity = motion.velocities(record.start, v);
   const std::vector<double> force = dynamics.total_force(record.start, v);
   const bool lagged = !last_velocity_.empty();
   const std::vector<double> last_v = lagged ? from_identity(dynamics, last_velocity_) : v;
@@ -94,15 +95,15 @@ const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
     p.n += at(xi);
     advance<D>(a, clock.dt, dynamics.settings().mass, p, &v[n * D], &q_mid[n * D]);
   }
-  record.v_mid = dynamics.velocities(record.start, q_mid);
-  record.alarm_crossings += dynamics.move(record.v_mid, clock.dt, clock.time());
+  record.v_mid = motion.velocities(record.start, q_mid);
+  record.alarm_crossings += motion.move(record.v_mid, clock.dt, clock.time());
   if (order_ > 1) {
     std::vector<double> last = v_before;
-    dynamics.cross_faces(last);
+    motion.cross_faces(last);
     last_velocity_ = by_identity(dynamics, last);
     last_force_ = by_identity(dynamics, force);
   }
-  dynamics.set_end_momentum(v);
+  motion.set_end_momentum(v);
   return record;
 }
 

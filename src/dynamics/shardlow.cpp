@@ -126,9 +126,9 @@ void Shardlow<D>::drag(Dynamics<D>& dynamics, const Clock& clock,
 template <int D>
 const StepRecord<D>& Shardlow<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   auto& record = this->record_;
+  Motion<D>& motion = dynamics.motion();
   this->begin(dynamics, clock);
-  std::vector<Vec<D>> velocity =
-      dynamics.velocities(record.start, dynamics.end_velocity(record.start));
+  std::vector<Vec<D>> velocity = motion.velocities(record.start, motion.end_velocity(record.start));
   if (begun_) kick(dynamics, 0.5 * clock.dt, velocity);
   record.start.velocity = velocity;
   record.v_start = velocity;
@@ -139,11 +139,11 @@ const StepRecord<D>& Shardlow<D>::step(Dynamics<D>& dynamics, const Clock& clock
   }
   kick(dynamics, 0.5 * clock.dt, velocity);
   record.v_mid = velocity;
-  record.alarm_crossings += dynamics.move(record.v_mid, clock.dt, clock.time());
+  record.alarm_crossings += motion.move(record.v_mid, clock.dt, clock.time());
   begun_ = true;
   std::vector<double> q;
   dynamics.dofs().gather({}, velocity, q);
-  dynamics.set_end_momentum(q);
+  motion.set_end_momentum(q);
   return record;
 }
 

@@ -17,14 +17,15 @@ void TwoStage<D>::add_bond_terms(Dynamics<D>& dynamics, double dt, const std::ve
 template <int D>
 const StepRecord<D>& TwoStage<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   auto& record = this->record_;
+  Motion<D>& motion = dynamics.motion();
   this->begin(dynamics, clock);
   record.start_weight = start_weight_;
   const bool implicit_bonds = implicit_bonds_ && record.start.network.bonds > 0;
   const StepWeights weights{dynamics.inertia(clock.dt), 0.0, implicit_bonds ? 0.5 * clock.dt : 0.0};
-  std::vector<double> q = dynamics.end_velocity(record.start);
+  std::vector<double> q = motion.end_velocity(record.start);
   std::vector<double> impulse =
       dynamics.draw_noise(record.start, clock.step, clock.dt, record.edge_noise);
-  const std::vector<double> momentum = dynamics.times_inertia(record.start, q, weights.inertia);
+  const std::vector<double> momentum = motion.times_inertia(record.start, q, weights.inertia);
   for (std::size_t k = 0; k < q.size(); ++k) impulse[k] += momentum[k];
 
   std::vector<double> load = dynamics.force(record.start);
@@ -32,11 +33,11 @@ const StepRecord<D>& TwoStage<D>::step(Dynamics<D>& dynamics, const Clock& clock
   dynamics.solve(record.start, load, weights, q);
   std::vector<double> q_mid = q;
   std::vector<double> p_mid;
-  if (dynamics.has_mass()) p_mid = dynamics.times_inertia(record.start, q, start_weight_);
+  if (dynamics.has_mass()) p_mid = motion.times_inertia(record.start, q, start_weight_);
 
   const double ahead = reach_ * clock.dt;
   const std::vector<Vec<D>> predicted =
-      dynamics.displaced(record.start.velocity, ahead, clock.time(), record.alarm_crossings);
+      motion.displaced(record.start.velocity, ahead, clock.time(), record.alarm_crossings);
   dynamics.evaluate(predicted, clock.time() + ahead, record.corrector);
   load = dynamics.force(record.corrector);
   // The noise is the stored vector, never drawn again or projected with the edges of r*.
@@ -48,7 +49,7 @@ const StepRecord<D>& TwoStage<D>::step(Dynamics<D>& dynamics, const Clock& clock
   for (std::size_t k = 0; k < q.size(); ++k)
     q_mid[k] = start_weight_ * q_mid[k] + (1.0 - start_weight_) * q[k];
   if (dynamics.has_mass()) {
-    const auto rest = dynamics.times_inertia(record.corrector, q, 1.0 - start_weight_);
+    const auto rest = motion.times_inertia(record.corrector, q, 1.0 - start_weight_);
     for (std::size_t k = 0; k < q.size(); ++k) p_mid[k] += rest[k];
   }
   this->finish(dynamics, clock, q_mid, p_mid);

@@ -5,11 +5,12 @@ namespace odpd {
 template <int D>
 const StepRecord<D>& VelocityVerlet<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   auto& record = this->record_;
+  Motion<D>& motion = dynamics.motion();
   this->begin(dynamics, clock);
   const double half_kick = 0.5 * clock.dt / dynamics.settings().mass;
   // The end velocity of the particles is the predicted one.
-  std::vector<double> predicted = dynamics.end_velocity(record.start);
-  record.start.velocity = dynamics.velocities(record.start, predicted);
+  std::vector<double> predicted = motion.end_velocity(record.start);
+  record.start.velocity = motion.velocities(record.start, predicted);
   std::vector<double> force =
       dynamics.draw_noise(record.start, clock.step, clock.dt, record.edge_noise);
   const std::vector<double> rest = dynamics.total_force(record.start, predicted);
@@ -20,17 +21,17 @@ const StepRecord<D>& VelocityVerlet<D>::step(Dynamics<D>& dynamics, const Clock&
     v = from_identity(dynamics, half_way_);
     for (std::size_t k = 0; k < v.size(); ++k) v[k] += half_kick * force[k];
   }
-  record.v_start = dynamics.velocities(record.start, v);
+  record.v_start = motion.velocities(record.start, v);
   std::vector<double> half_way = v;
   for (std::size_t k = 0; k < v.size(); ++k) {
     half_way[k] += half_kick * force[k];
     predicted[k] = v[k] + 2.0 * lambda_ * half_kick * force[k];
   }
-  record.v_mid = dynamics.velocities(record.start, half_way);
-  record.alarm_crossings += dynamics.move(record.v_mid, clock.dt, clock.time());
-  dynamics.cross_faces(half_way);
+  record.v_mid = motion.velocities(record.start, half_way);
+  record.alarm_crossings += motion.move(record.v_mid, clock.dt, clock.time());
+  motion.cross_faces(half_way);
   half_way_ = by_identity(dynamics, half_way);
-  dynamics.set_end_momentum(predicted);
+  motion.set_end_momentum(predicted);
   return record;
 }
 

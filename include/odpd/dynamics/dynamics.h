@@ -12,8 +12,7 @@
 #include <vector>
 
 #include "odpd/core/timer.h"
-#include "odpd/dynamics/step_record.h"
-#include "odpd/dynamics/surroundings.h"
+#include "odpd/dynamics/motion.h"
 #include "odpd/geometry/pair_list.h"
 #include "odpd/operator/rigid_resistance.h"
 #include "odpd/pairs/pair_model.h"
@@ -67,11 +66,13 @@ class Dynamics {
   const PairModel<D>& model() const { return model_; }
   const Surroundings<D>& surroundings() const { return surroundings_; }
   const DynamicsSettings& settings() const { return settings_; }
+  /// How these particles move.
+  Motion<D>& motion() { return motion_; }
 
   /// The particles were replaced (a checkpoint was read): forget what was derived from them.
   void particles_replaced() {
     list_.invalidate();
-    dofs_.reset();
+    motion_.particles_replaced();
   }
   /// Brings memory into spatial order when this step is due for it (a function of the step number alone).
   void reorder_if_due(std::int64_t step);
@@ -104,30 +105,11 @@ class Dynamics {
   /// M = 2 m/dt.
   double inertia(double dt) const { return 2.0 * settings_.mass / dt; }
   bool has_mass() const { return settings_.mass > 0.0; }
-  /// The unknowns of the particles' end velocities (zeros without mass), at the stage of a step's start.
-  Unknowns end_velocity(const Stage<D>& stage);
-  /// After `move`: sets them from momenta per mass p = P^T P q of the step, with the moments of inertia of where the bodies
-  /// are now, as those of the images that are now in the box.
-  void set_end_momentum(const Unknowns& p);
-  /// inertia P^T P q: momenta, with a mass, or a drag, of `inertia` on every particle that moves.
-  Unknowns times_inertia(const Stage<D>& stage, const Unknowns& q, double inertia);
-  /// P q + the stage's known velocities.
-  std::vector<Vec<D>> velocities(const Stage<D>& stage, const Unknowns& q);
-
-  /// position + dt velocity from time t on, wrapped (with shear single particles by `evaluate` only); a particle that moves
-  /// further than half the box throws, as in `move`. Adds the mirror's catches to `crossings`.
-  std::vector<Vec<D>> displaced(const std::vector<Vec<D>>& velocity, double dt, double t,
-                                std::int64_t& crossings);
-  /// Moves the particles by dt velocity from time t on and remembers it; returns the mirror's catches. Throws SolverError
-  /// when a particle moves further than half the box in one step.
-  std::int64_t move(const std::vector<Vec<D>>& velocity, double dt, double t);
-  /// After `move`: velocities q of the step become those of the images that are now in the box.
-  void cross_faces(Unknowns& q);
 
   /// R on the sites: free particles and constituents.
   const Resistance<D>& resistance() const { return resistance_.sites(); }
   const PairList<D>& pair_list() const { return list_; }
-  const DofMap<D>& dofs();
+  const DofMap<D>& dofs() { return motion_.dofs(); }
   Solver& solver() { return *solver_; }
   const Solver& solver() const { return *solver_; }
   PhaseSeconds& phases() { return phases_; }
@@ -136,22 +118,10 @@ class Dynamics {
   const SolverStatistics& statistics() const { return statistics_; }
 
  private:
-  void wrap_sheared(Stage<D>& stage) const;
   void write_slips(Stage<D>& stage) const;
   Unknowns without_sliding_springs(const Stage<D>& stage, const StepWeights& weights,
                                    Unknowns load);
   void add_mean_flow(const Stage<D>& stage, Unknowns& q);
-  void check_paths(const std::vector<Vec<D>>& velocity, double dt) const;
-  void leave_images(const std::vector<std::int32_t>& before);
-  std::vector<std::int32_t> moving_images() const;
-  std::vector<Vec<D>> arms_at(const Box<D>& box, std::span<const Vec<D>> positions);
-  void place_arms(Stage<D>& stage);
-  void count_boxes(std::size_t body, Stage<D>& stage);
-  /// Moves a pose of the body along velocities of its constituents, wrapped in `box`. False when that changes no position.
-  bool advance(std::size_t body, const std::vector<Vec<D>>& velocity, double dt, const Box<D>& box,
-               RigidPose<D>& pose);
-  void place(std::size_t body, const RigidPose<D>& pose, const Box<D>& box,
-             std::vector<Vec<D>>& positions, std::vector<typename Particles<D>::Image>* images);
   void balance_momentum(const Unknowns& load, double shift, Unknowns& q) const;
   void note(const SolveReport& report);
 
@@ -159,13 +129,11 @@ class Dynamics {
   Particles<D>& particles_;
   const PairModel<D>& model_;
   const Surroundings<D>& surroundings_;
+  Motion<D> motion_;
   std::unique_ptr<Solver> solver_;
   DynamicsSettings settings_;
   PairList<D> list_;
-  std::unique_ptr<DofMap<D>> dofs_;
   RigidResistance<D> resistance_;
-  std::vector<Vec<D>> faces_crossed_;  // with shear: velocity that each particle lost in `move`
-  Box<D> moved_in_;                    // the box at the end of `move`
   PhaseSeconds phases_;
   SolverStatistics statistics_;
 };

@@ -1,12 +1,12 @@
-// The parts of Dynamics that know rigid bodies: their arms, known motion, and motion along velocities of constituents.
+// The parts of Motion that know rigid bodies: their arms, known motion, and motion along velocities of constituents.
 #include <cmath>
 
-#include "odpd/dynamics/dynamics.h"
+#include "odpd/dynamics/motion.h"
 
 namespace odpd {
 
 template <int D>
-std::vector<Vec<D>> Dynamics<D>::arms_at(const Box<D>& box, std::span<const Vec<D>> positions) {
+std::vector<Vec<D>> Motion<D>::arms_at(const Box<D>& box, std::span<const Vec<D>> positions) {
   std::vector<Vec<D>> arms(positions.size()), own, points;
   for (std::size_t b = 0; b < particles_.bodies.size(); ++b) {
     const auto constituents = dofs().constituents(b);
@@ -22,7 +22,7 @@ std::vector<Vec<D>> Dynamics<D>::arms_at(const Box<D>& box, std::span<const Vec<
 }
 
 template <int D>
-void Dynamics<D>::place_arms(Stage<D>& stage) {
+void Motion<D>::place_arms(Stage<D>& stage) {
   stage.arms = arms_at(stage.box, stage.position);
   for (std::size_t b = 0; b < particles_.bodies.size(); ++b) {
     if (stage.box.shear) count_boxes(b, stage);
@@ -37,7 +37,7 @@ void Dynamics<D>::place_arms(Stage<D>& stage) {
 
 /// From the centre at the step's start, which lies within half a box of where it is now.
 template <int D>
-void Dynamics<D>::count_boxes(std::size_t body, Stage<D>& stage) {
+void Motion<D>::count_boxes(std::size_t body, Stage<D>& stage) {
   const int up = box_.shear->gradient;
   for (const std::int32_t particle : dofs().constituents(body)) {
     const auto p = static_cast<std::size_t>(particle);
@@ -48,8 +48,8 @@ void Dynamics<D>::count_boxes(std::size_t body, Stage<D>& stage) {
 }
 
 template <int D>
-bool Dynamics<D>::advance(std::size_t body, const std::vector<Vec<D>>& velocity, double dt,
-                          const Box<D>& box, RigidPose<D>& pose) {
+bool Motion<D>::advance(std::size_t body, const std::vector<Vec<D>>& velocity, double dt,
+                        const Box<D>& box, RigidPose<D>& pose) {
   const std::vector<Vec<D>>& frame = particles_.bodies[body].frame;
   std::vector<Vec<D>> arms, velocities;
   bool moves = false;
@@ -64,9 +64,9 @@ bool Dynamics<D>::advance(std::size_t body, const std::vector<Vec<D>>& velocity,
 }
 
 template <int D>
-void Dynamics<D>::place(std::size_t body, const RigidPose<D>& pose, const Box<D>& box,
-                        std::vector<Vec<D>>& positions,
-                        std::vector<typename Particles<D>::Image>* images) {
+void Motion<D>::place(std::size_t body, const RigidPose<D>& pose, const Box<D>& box,
+                      std::vector<Vec<D>>& positions,
+                      std::vector<typename Particles<D>::Image>* images) {
   typename Particles<D>::Image unused;
   const auto constituents = dofs().constituents(body);
   for (std::size_t k = 0; k < constituents.size(); ++k) {
@@ -76,15 +76,15 @@ void Dynamics<D>::place(std::size_t body, const RigidPose<D>& pose, const Box<D>
   }
 }
 
-#define ODPD_INSTANTIATE(D)                                                                  \
-  template std::vector<Vec<D>> Dynamics<D>::arms_at(const Box<D>&, std::span<const Vec<D>>); \
-  template void Dynamics<D>::place_arms(Stage<D>&);                                          \
-  template void Dynamics<D>::count_boxes(std::size_t, Stage<D>&);                            \
-  template bool Dynamics<D>::advance(std::size_t, const std::vector<Vec<D>>&, double,        \
-                                     const Box<D>&, RigidPose<D>&);                          \
-  template void Dynamics<D>::place(std::size_t, const RigidPose<D>&, const Box<D>&,          \
-                                   std::vector<Vec<D>>&,                                     \
-                                   std::vector<typename Particles<D>::Image>*);
+#define ODPD_INSTANTIATE(D)                                                                        \
+  template std::vector<Vec<D>> Motion<D>::arms_at(const Box<D>&, std::span<const Vec<D>>);         \
+  template void Motion<D>::place_arms(Stage<D>&);                                                  \
+  template void Motion<D>::count_boxes(std::size_t, Stage<D>&);                                    \
+  template bool Motion<D>::advance(std::size_t, const std::vector<Vec<D>>&, double, const Box<D>&, \
+                                   RigidPose<D>&);                                                 \
+  template void Motion<D>::place(std::size_t, const RigidPose<D>&, const Box<D>&,                  \
+                                 std::vector<Vec<D>>&,                                             \
+                                 std::vector<typename Particles<D>::Image>*);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)
 #undef ODPD_INSTANTIATE
