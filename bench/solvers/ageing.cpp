@@ -29,7 +29,7 @@ void age(const FluidSpec& spec, Results& results) {
     odpd::SolverOptions options = backend.options;
     options.tolerance = tolerance;
     odpd::Dynamics<D> dynamics(scene->box(), scene->particles(), scene->model(), *scene,
-                               odpd::make_solver(options), dynamics_settings<D>(0.0));
+                               odpd::make_solver(options), {.seed = seed});
     const auto integrator = odpd::make_integrator<D>("trapezoidal");
     odpd::Clock clock{.dt = time_step};
     std::string note;

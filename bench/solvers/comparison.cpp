@@ -203,7 +203,7 @@ void Comparison<D>::step(int threads) {
   odpd::set_threads(threads, spec_.particles);
   odpd::Dynamics<D> dynamics(scene->box(), scene->particles(), scene->model(), *scene,
                              odpd::make_solver({.name = "pcg", .tolerance = step_tolerance}),
-                             dynamics_settings<D>(0.0));
+                             {.seed = seed});
   const auto integrator = odpd::make_integrator<D>("trapezoidal");
   const std::int64_t steps = spec_.particles <= 20000 ? 20 : spec_.particles <= 200000 ? 5 : 2;
   odpd::Clock clock{.dt = time_step};

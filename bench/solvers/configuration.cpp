@@ -17,8 +17,6 @@ using odpd::Vec;
 
 namespace {
 
-constexpr std::uint64_t seed = 1;
-
 /// An obstacle that moves along x.
 template <int D>
 class Obstacle : public odpd::NoSurroundings<D> {
@@ -68,11 +66,10 @@ std::int64_t parts_of(const FluidSpec& spec) {
 /// The free particles' positions after `steps` steps in the base box.
 template <int D>
 std::vector<Vec<D>> stepped(odpd::SceneSettings<D> settings, std::int64_t steps) {
+  settings.zeta_0 = 1.0;
   odpd::Scene<D> scene(std::move(settings));
-  const double drag = 1.0;
   odpd::Dynamics<D> dynamics(scene.box(), scene.particles(), scene.model(), scene,
-                             odpd::make_solver({.name = "pcg", .tolerance = 1e-3}),
-                             dynamics_settings<D>(drag));
+                             odpd::make_solver({.name = "pcg", .tolerance = 1e-3}), {.seed = seed});
   const auto integrator = odpd::make_integrator<D>("trapezoidal");
   odpd::Clock clock{.dt = time_step, .total_steps = steps};
   for (; !clock.finished(); clock.advance()) integrator->step(dynamics, clock);
@@ -119,14 +116,6 @@ void hold_middle(std::int64_t count, odpd::Scene<D>& scene) {
 }
 
 }  // namespace
-
-template <int D>
-odpd::DynamicsSettings dynamics_settings(double drag) {
-  odpd::DynamicsSettings settings;
-  settings.seed = seed;
-  settings.zeta_0 = drag;
-  return settings;
-}
 
 template <int D>
 odpd::SceneSettings<D> scene_settings(const FluidSpec& spec, std::int64_t parts) {
@@ -176,9 +165,9 @@ Problem<D>::Problem(const FluidSpec& fluid, const std::vector<Vec<D>>& positions
     surroundings = std::make_unique<Obstacle<D>>();
   }
   const odpd::Surroundings<D>& around = surroundings ? *surroundings : *scene;
-  dynamics =
-      std::make_unique<odpd::Dynamics<D>>(scene->box(), scene->particles(), scene->model(), around,
-                                          odpd::make_solver({}), dynamics_settings<D>(0.0));
+  dynamics = std::make_unique<odpd::Dynamics<D>>(scene->box(), scene->particles(), scene->model(),
+                                                 around, odpd::make_solver({}),
+                                                 odpd::DynamicsSettings{.seed = seed});
   dynamics->reorder_if_due(0);
   dynamics->evaluate(scene->particles().position, 0.0, stage);
   std::vector<Vec<D>> edge_noise;
@@ -208,7 +197,6 @@ double Problem<D>::neighbours() {
 }
 
 #define ODPD_INSTANTIATE(D)                                                          \
-  template odpd::DynamicsSettings dynamics_settings<D>(double);                      \
   template odpd::SceneSettings<D> scene_settings<D>(const FluidSpec&, std::int64_t); \
   template std::vector<Vec<D>> equilibrated<D>(const FluidSpec&, std::int64_t);      \
   template std::unique_ptr<odpd::Scene<D>> scene_at<D>(const FluidSpec&,             \

@@ -12,6 +12,7 @@
 namespace bench {
 
 inline constexpr double time_step = 0.005;
+inline constexpr std::uint64_t seed = 1;
 /// Larger fluids are replicas of a box of at most so many particles.
 inline constexpr std::int64_t largest_base = 12500;
 
@@ -66,7 +67,5 @@ class Problem {
 template <int D>
 std::unique_ptr<odpd::Scene<D>> scene_at(const FluidSpec& spec,
                                          const std::vector<odpd::Vec<D>>& positions);
-template <int D>
-odpd::DynamicsSettings dynamics_settings(double drag);
 
 }  // namespace bench

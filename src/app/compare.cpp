@@ -81,7 +81,7 @@ FrozenProblem<D> freeze(Simulation<D>& simulation, std::int64_t steps) {
   for (std::size_t k = 0; k < problem.b.size(); ++k) problem.b[k] += xi[k] + momentum[k];
   for (RigidResistance<D>* r : {&problem.as_posed, &problem.held})
     r->rebuild(stage.network, dynamics.dofs(), dynamics.particles(), stage.position, stage.arms,
-               inertia + dynamics.settings().zeta_0);
+               inertia + dynamics.constants().zeta_0);
   problem.exact_as_posed = tightest(problem.as_posed.system(), problem.b);
   problem.exact_held = tightest(problem.held.system(), problem.b);
   return problem;

@@ -56,14 +56,6 @@ std::vector<double> bond_numbers(const std::vector<Bond>& bonds) {
   return numbers;
 }
 
-template <int D>
-DynamicsSettings dynamics_of(DynamicsSettings settings, const Scene<D>& scene) {
-  settings.mass = scene.settings().mass;
-  settings.zeta_0 = scene.settings().zeta_0;
-  settings.kT = scene.largest_kT();
-  return settings;
-}
-
 }  // namespace
 
 template <int D>
@@ -73,11 +65,11 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings)
       clock_(settings_.clock),
       scene_(scene_of<D>(config)),
       dynamics_(scene_.box(), scene_.particles(), scene_.model(), scene_,
-                make_solver(settings_.solver), dynamics_of(settings_.dynamics, scene_)),
+                make_solver(settings_.solver), settings_.dynamics),
       integrator_(make_integrator<D>(settings_.integrator)),
       observers_(make_observers(config, scene_, clock_, integrator_->in_time())),
       watch_of_state_(scene_, settings_.blow_up) {
-  if (const std::string why = mass_objection(settings_.integrator.name, scene_.settings().mass);
+  if (const std::string why = mass_objection(settings_.integrator.name, dynamics_.constants().mass);
       !why.empty())
     config.table("integrator").fail("name", why);
   if (const std::string why = bodies_objection(settings_.integrator.name);
@@ -108,7 +100,7 @@ void Simulation<D>::check_observables(const Config& config) const {
 template <int D>
 void Simulation<D>::check_observable(const Config& entry) const {
   std::vector<std::string> names{"energy_per_particle", "pressure", "config_temperature"};
-  if (scene_.settings().mass > 0.0 && integrator_->in_time())
+  if (dynamics_.constants().mass > 0.0 && integrator_->in_time())
     names.push_back("kinetic_temperature");
   if (integrator_->in_time()) names.push_back("diffusion");
   if (!scene_.settings().walls.empty()) names.push_back("alarm_crossings");

@@ -38,6 +38,7 @@ Dynamics<D>::Dynamics(const Box<D>& box, Particles<D>& particles, const PairMode
       particles_(particles),
       model_(model),
       surroundings_(surroundings),
+      constants_(surroundings.constants()),
       motion_(box, particles, surroundings),
       solver_(std::move(solver)),
       settings_(settings),
@@ -88,9 +89,9 @@ auto Dynamics<D>::draw_noise(const Stage<D>& stage, std::int64_t step, double dt
                   edge_noise);
   std::vector<Vec<D>> force(stage.position.size());
   add_edge_forces<D>(stage.network, edge_noise, force);
-  if (settings_.zeta_0 > 0.0)
+  if (constants_.zeta_0 > 0.0)
     add_drag_noise(particles_, settings_.seed, static_cast<std::uint64_t>(step),
-                   std::sqrt(2.0 * settings_.kT * settings_.zeta_0 / dt), force);
+                   std::sqrt(2.0 * constants_.kT * constants_.zeta_0 / dt), force);
   Unknowns xi;
   motion_.dofs().gather(stage.arms, force, xi);
   return xi;
@@ -151,7 +152,7 @@ template <int D>
 auto Dynamics<D>::total_force(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
   Unknowns f = force(stage);
   const Unknowns drag = friction(stage, q);
-  const Unknowns background = motion_.times_inertia(stage, q, settings_.zeta_0);
+  const Unknowns background = motion_.times_inertia(stage, q, constants_.zeta_0);
   for (std::size_t k = 0; k < f.size(); ++k) f[k] -= drag[k] + background[k];
   return f;
 }
@@ -161,7 +162,7 @@ const System& Dynamics<D>::assemble(const Stage<D>& stage, const StepWeights& we
   const PhaseTimer timer(phases_, Phase::assembly);
   resistance_.slide(stage.box);
   resistance_.rebuild(stage.network, motion_.dofs(), particles_, stage.position, stage.arms,
-                      weights.inertia + settings_.zeta_0, weights.stiffness_time,
+                      weights.inertia + constants_.zeta_0, weights.stiffness_time,
                       weights.bond_time);
   if (weights.stiffness_time > 0.0)
     for (std::size_t k = 0; k < stage.network.k_c.size(); ++k)
@@ -205,7 +206,7 @@ void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights
         solver_->solve(box_.shear ? without_sliding_springs(stage, weights, load) : load, guess);
   }
   note(stage.report);
-  const double shift = weights.inertia + settings_.zeta_0;
+  const double shift = weights.inertia + constants_.zeta_0;
   if (shift > 0.0 && !guess.empty() && motion_.dofs().nodes() == motion_.dofs().particles() &&
       particles_.bodies.empty() && !system.holds_centre_of_mass())
     balance_momentum(load, shift, guess);

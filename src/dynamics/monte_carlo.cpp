@@ -53,7 +53,7 @@ void MonteCarlo<D>::refuse_driving(Dynamics<D>& dynamics, double time) {
 
 template <int D>
 void MonteCarlo<D>::check(Dynamics<D>& dynamics) {
-  const double kT = dynamics.settings().kT;
+  const double kT = dynamics.constants().kT;
   if (!(kT > 0.0))
     throw ConfigError(
         "integrator 'monte-carlo' samples exp(-U/kT) and needs fluid.kT > 0: set it, or use "
@@ -86,7 +86,7 @@ bool MonteCarlo<D>::try_move(Dynamics<D>& dynamics, std::size_t i, const std::ar
   const double work = dot(force_[i], r - particles.position[i]);
   box.wrap(r, image);
   const double change = energy_->at(i, r) - energy_->at(i, particles.position[i]) - work;
-  if (!(change <= 0.0 || u.back() < std::exp(-change / dynamics.settings().kT))) return false;
+  if (!(change <= 0.0 || u.back() < std::exp(-change / dynamics.constants().kT))) return false;
   energy_->moved(i, r);
   particles.position[i] = r;
   particles.image[i] = image;
@@ -124,7 +124,7 @@ bool MonteCarlo<D>::try_body(Dynamics<D>& dynamics, std::size_t body, const Coun
     change += energy_->at(p, position[k]) - energy_->at(p, particles.position[p]) -
               dot(force_[p], box.separation(position[k], particles.position[p]));
   }
-  if (!(change <= 0.0 || turn.back() < std::exp(-change / dynamics.settings().kT))) return false;
+  if (!(change <= 0.0 || turn.back() < std::exp(-change / dynamics.constants().kT))) return false;
   for (std::size_t k = 0; k < constituents.size(); ++k) {
     const auto p = static_cast<std::size_t>(constituents[k]);
     energy_->moved(p, position[k]);

@@ -65,7 +65,7 @@ const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   auto& record = this->record_;
   Motion<D>& motion = dynamics.motion();
   this->begin(dynamics, clock);
-  const double zeta_0 = dynamics.settings().zeta_0;
+  const double zeta_0 = dynamics.constants().zeta_0;
   std::vector<double> v = motion.end_velocity(record.start);
   const std::vector<double> xi =
       dynamics.draw_noise(record.start, clock.step, clock.dt, record.edge_noise);
@@ -93,7 +93,7 @@ const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
     Particle<D> p{at(v), at(force) + a * at(v), Vector::Zero()};
     if (lagged) p.dn = p.n - (at(last_force) + a * at(last_v));
     p.n += at(xi);
-    advance<D>(a, clock.dt, dynamics.settings().mass, p, &v[n * D], &q_mid[n * D]);
+    advance<D>(a, clock.dt, dynamics.constants().mass, p, &v[n * D], &q_mid[n * D]);
   }
   record.v_mid = motion.velocities(record.start, q_mid);
   record.alarm_crossings += motion.move(record.v_mid, clock.dt, clock.time());

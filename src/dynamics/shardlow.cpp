@@ -57,7 +57,7 @@ void EdgeColours::assign(std::span<const std::int32_t> i, std::span<const std::i
 template <int D>
 void Shardlow<D>::kick(Dynamics<D>& dynamics, double dt, std::vector<Vec<D>>& velocity) const {
   const Stage<D>& stage = this->record_.start;
-  const double weight = dt / dynamics.settings().mass;
+  const double weight = dt / dynamics.constants().mass;
   for (std::size_t i = 0; i < velocity.size(); ++i)
     if (dynamics.particles().is_free(i))
       velocity[i] += weight * (stage.potential_force[i] + stage.driving_force[i]);
@@ -69,7 +69,7 @@ void Shardlow<D>::exchange(Dynamics<D>& dynamics, const Clock& clock,
                            std::vector<Vec<D>>& velocity) {
   const Particles<D>& particles = dynamics.particles();
   const PairNetwork<D>& network = this->record_.start.network;
-  const double mass = dynamics.settings().mass;
+  const double mass = dynamics.constants().mass;
   std::vector<char> free(velocity.size());
   for (std::size_t i = 0; i < free.size(); ++i) free[i] = particles.is_free(i) ? 1 : 0;
   colours_.assign(network.i, network.j, free);
@@ -112,11 +112,12 @@ void Shardlow<D>::exchange(Dynamics<D>& dynamics, const Clock& clock,
 template <int D>
 void Shardlow<D>::drag(Dynamics<D>& dynamics, const Clock& clock,
                        std::vector<Vec<D>>& velocity) const {
-  const DynamicsSettings& s = dynamics.settings();
+  const ParticleConstants& s = dynamics.constants();
   if (s.zeta_0 == 0.0) return;
   std::vector<Vec<D>> w(velocity.size());
   if (dynamics.model().thermal())
-    add_drag_noise(dynamics.particles(), s.seed, static_cast<std::uint64_t>(clock.step), 1.0, w);
+    add_drag_noise(dynamics.particles(), dynamics.settings().seed,
+                   static_cast<std::uint64_t>(clock.step), 1.0, w);
   for (std::size_t i = 0; i < velocity.size(); ++i)
     for (int c = 0; c < D; ++c)
       if (dynamics.particles().is_free(i))

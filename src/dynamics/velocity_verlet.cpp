@@ -7,7 +7,7 @@ const StepRecord<D>& VelocityVerlet<D>::step(Dynamics<D>& dynamics, const Clock&
   auto& record = this->record_;
   Motion<D>& motion = dynamics.motion();
   this->begin(dynamics, clock);
-  const double half_kick = 0.5 * clock.dt / dynamics.settings().mass;
+  const double half_kick = 0.5 * clock.dt / dynamics.constants().mass;
   // The end velocity of the particles is the predicted one.
   std::vector<double> predicted = motion.end_velocity(record.start);
   record.start.velocity = motion.velocities(record.start, predicted);

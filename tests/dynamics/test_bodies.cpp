@@ -68,13 +68,9 @@ TYPED_TEST(MovingBodies, SpinFreelyWithoutFriction) {
   for (Vec<D>& b : body.frame) b -= mean;
   particles.add_body(body, box, 0);
   const DpdModel<D> model(1, {DpdParameters{.kT = 0.0}});
-  const NoSurroundings<D> nothing;
-  DynamicsSettings settings;
-  settings.mass = 2.0;
-  settings.kT = 0.0;
-  settings.reorder_every = 0;
+  const NoSurroundings<D> nothing({.mass = 2.0, .kT = 0.0});
   Dynamics<D> dynamics(box, particles, model, nothing,
-                       make_solver({.name = "cholmod", .tolerance = 1e-12}), settings);
+                       make_solver({.name = "cholmod", .tolerance = 1e-12}), {.reorder_every = 0});
   Vec<D> spin{};
   for (int c = 0; c < rotation_components<D>; ++c) spin[c] = 1.0 + 0.7 * c;
   const auto angular_momentum = [&] {

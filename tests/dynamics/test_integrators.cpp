@@ -50,8 +50,8 @@ class Integrators : public testing::TestWithParam<Scheme> {
   ToySettings toy(double kT) const {
     ToySettings s;
     s.fluid.kT = kT;
-    s.dynamics.mass = GetParam().mass;
-    s.dynamics.kT = kT;
+    s.constants.mass = GetParam().mass;
+    s.constants.kT = kT;
     return s;
   }
   // A shear wave, so that mass has something to carry.
@@ -79,7 +79,7 @@ TEST_P(Integrators, OrderWithoutNoise) {
     s.fluid.s = 2.0;
     s.fluid.s_bar = 2.0;
     s.solver.tolerance = 1e-12;
-    s.dynamics.zeta_0 = 0.1;
+    s.constants.zeta_0 = 0.1;
     Toy t(s);
     set_in_motion(t);
     t.run(*make_integrator<2>(settings),
@@ -147,7 +147,7 @@ TEST_P(Integrators, RestartIsBitwise) {
   ToySettings s = toy(1.0);
   s.walled = true;
   s.dynamics.reorder_every = 5;
-  s.dynamics.zeta_0 = 0.2;
+  s.constants.zeta_0 = 0.2;
   Toy unbroken(s);
   set_in_motion(unbroken);
   const auto first = make();
@@ -186,9 +186,9 @@ TEST(IntegratorTable, SchemesThatCannotTakeAMassSayWhichCan) {
 
 // 3000 particles out of each other's reach.
 struct Strangers {
-  explicit Strangers(const DynamicsSettings& settings)
-      : dynamics(box, scattered(particles), model, nothing, make_solver({.name = "pcg"}),
-                 settings) {}
+  explicit Strangers(const ParticleConstants& constants)
+      : nothing(constants),
+        dynamics(box, scattered(particles), model, nothing, make_solver({.name = "pcg"}), {}) {}
   static Particles<2>& scattered(Particles<2>& particles) {
     for (int k = 0; k < 3000; ++k)
       particles.add({{7.0 * (k % 57) + 1.0, 7.0 * (k / 57) + 1.0}}, 0, 0);
@@ -206,7 +206,7 @@ struct Strangers {
 // dt/m = 1: schemes that freeze the noise are off by what their headers say, (2/x) tanh(x/2) = 0.924.
 double drag_temperature(const IntegratorSettings& settings, double dt) {
   constexpr double zeta_0 = 2.0, mass = 0.1;
-  Strangers strangers(DynamicsSettings{.mass = mass, .zeta_0 = zeta_0});
+  Strangers strangers(ParticleConstants{.mass = mass, .zeta_0 = zeta_0});
   const auto integrator = make_integrator<2>(settings);
   const auto relaxed = static_cast<std::int64_t>(6.0 * mass / zeta_0 / dt) + 1;
   Clock clock{.dt = dt, .total_steps = 7 * relaxed};
@@ -232,7 +232,7 @@ TEST(Drag, VelocityHasTheVarianceThatTheHeadersState) {
 
 // Massless: each step is a Gaussian of variance 2 kT dt/zeta_0 per component. 2 x 3000 x 20 samples: standard error 0.4 %.
 TEST(Drag, MasslessParticlesDiffuseWithKTOverZeta) {
-  Strangers strangers(DynamicsSettings{.zeta_0 = 2.0});
+  Strangers strangers(ParticleConstants{.zeta_0 = 2.0});
   const auto integrator = make_integrator<2>("trapezoidal");
   double square = 0.0;
   for (Clock clock{.dt = 0.01, .total_steps = 20}; !clock.finished(); clock.advance())

@@ -21,6 +21,7 @@ namespace {
 template <int D>
 class Trap : public NoSurroundings<D> {
  public:
+  using NoSurroundings<D>::NoSurroundings;
   double stiffness = 0.0;
   double centre = 0.0;
   Vec<D> force{};
@@ -42,7 +43,7 @@ class Trap : public NoSurroundings<D> {
 template <int D>
 struct Toy {
   Toy(double edge, std::int64_t count, DynamicsSettings settings = {}, DpdParameters pair = {})
-      : model(1, {pair}) {
+      : model(1, {pair}), trap({.kT = pair.kT}) {
     box.size = support::uniform_vec<D>(edge);
     box.periodic.fill(true);
     box.periodic.back() = false;
@@ -107,7 +108,7 @@ TYPED_TEST(MonteCarloTest, AMoveChangesTheTotalEnergyByItsLocalChange) {
 // 10: standard errors 0.0075 (mean) and 2.2 % of the variance. The box is 8 standard deviations away.
 TYPED_TEST(MonteCarloTest, ATrappedParticleHasItsBoltzmannDistribution) {
   constexpr int D = TypeParam::D;
-  Toy<D> toy(8.0, 1, {.kT = 0.5}, {.kT = 0.5});
+  Toy<D> toy(8.0, 1, {}, {.kT = 0.5});
   toy.particles.position[0] = support::uniform_vec<D>(4.0);
   toy.trap.stiffness = 2.0;
   toy.trap.centre = 3.5;
@@ -269,7 +270,7 @@ TYPED_TEST(MonteCarloTest, KnownParticlesStay) {
 
 TEST(MonteCarlo, RefusesWhatHasNoEquilibrium) {
   const auto check = [](const auto& change, double kT) {
-    Toy<2> toy(4.0, 20, {.kT = kT});
+    Toy<2> toy(4.0, 20, {}, {.kT = kT});
     toy.particles.group[0] = 1;
     change(toy.trap);
     MonteCarlo<2>().check(*toy.dynamics);

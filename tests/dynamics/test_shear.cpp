@@ -35,7 +35,7 @@ struct ShearedToySettings {
 
 template <int D>
 struct ShearedToy {
-  explicit ShearedToy(const ShearedToySettings& s) {
+  explicit ShearedToy(const ShearedToySettings& s) : none({.mass = s.mass, .kT = s.fluid.kT}) {
     for (int c = 0; c < D; ++c) box.size[c] = s.edge + 0.4 * c;
     box.periodic.fill(true);
     box.shear = s.shear;
@@ -72,8 +72,6 @@ struct ShearedToy {
     model = std::make_unique<BondedModel<D>>(std::make_unique<DpdModel<D>>(1, std::vector{s.fluid}),
                                              bonds, frames);
     DynamicsSettings settings;
-    settings.mass = s.mass;
-    settings.kT = s.fluid.kT;
     settings.reorder_every = s.reorder_every;
     SolverOptions solver{.name = "pcg", .tolerance = 1e-12};
     solver.preconditioner = s.preconditioner;
@@ -116,7 +114,7 @@ struct ShearedToy {
   Box<D> box;
   Particles<D> particles;
   std::unique_ptr<PairModel<D>> model;
-  NoSurroundings<D> none;
+  const NoSurroundings<D> none;
   std::unique_ptr<Dynamics<D>> dynamics;
 };
 

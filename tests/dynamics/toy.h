@@ -11,11 +11,13 @@ namespace odpd {
 
 class MovingRow : public NoSurroundings<2> {
  public:
+  using NoSurroundings<2>::NoSurroundings;
   Vec<2> known_velocity(std::int32_t, double) const override { return {{0.5, 0.0}}; }
 };
 
 struct ToySettings {
   DpdParameters fluid{};
+  ParticleConstants constants{};
   DynamicsSettings dynamics{};
   SolverOptions solver{.name = "pcg", .tolerance = 1e-10};
   bool walled = false;
@@ -24,7 +26,7 @@ struct ToySettings {
 
 struct Toy {
   explicit Toy(const ToySettings& s)
-      : box{{{0.5 * s.side, 0.5 * s.side}}, {true, true}}, model(1, {s.fluid}) {
+      : box{{{0.5 * s.side, 0.5 * s.side}}, {true, true}}, model(1, {s.fluid}), row(s.constants) {
     for (int x = 0; x < s.side; ++x)
       for (int y = 0; y < s.side; ++y)
         particles.add(

@@ -19,6 +19,7 @@ constexpr double tied_trap = 4.0;     // spring constant on each particle, kT = 
 template <int D>
 class TiedTraps : public NoSurroundings<D> {
  public:
+  using NoSurroundings<D>::NoSurroundings;
   void add_potential_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
                             std::vector<Vec<D>>& force) const override {
     for (std::size_t i = 0; i < positions.size(); ++i)
@@ -104,9 +105,9 @@ TiedAverages measured_on_sites(const TiedRun& run) {
       std::make_unique<DpdModel<D>>(
           1, std::vector{DpdParameters{.a = 0.0, .gamma = 4.5, .s = 0.5, .cutoff = 3.0}}),
       bonds, frames);
-  const TiedTraps<D> traps;
+  const TiedTraps<D> traps({.mass = run.mass});
   Dynamics<D> dynamics(box, particles, model, traps,
-                       make_solver({.name = "pcg", .tolerance = 1e-8}), {.mass = run.mass});
+                       make_solver({.name = "pcg", .tolerance = 1e-8}), {});
   IntegratorSettings settings;
   settings.name = run.scheme;
   settings.implicit_bonds = run.implicit_bonds;

@@ -42,6 +42,7 @@ constexpr double reach = 0.25;  // radius of the disc whose population is compar
 
 class Traps : public NoSurroundings<2> {
  public:
+  using NoSurroundings<2>::NoSurroundings;
   void add_potential_forces(const Particles<2>& particles, std::span<const Vec<2>> positions,
                             std::vector<Vec<2>>& force) const override {
     for (std::size_t i = 0; i < positions.size(); ++i)
@@ -61,10 +62,9 @@ double population(const std::string& scheme, std::int64_t steps, double mass = 0
     }
   });
   const DpdModel<2> model = friction_only(3.0);
-  const Traps traps;
+  const Traps traps({.mass = mass});
   Dynamics<2> dynamics(toy_box(), particles, model, traps,
-                       make_solver({.name = "pcg", .tolerance = 1e-9}),
-                       DynamicsSettings{.mass = mass});
+                       make_solver({.name = "pcg", .tolerance = 1e-9}), DynamicsSettings{});
   const auto integrator = make_integrator<2>(scheme);
   Clock clock{.dt = 0.01, .total_steps = steps};
   double inside = 0.0, all = 0.0;

@@ -18,7 +18,7 @@ template <int D>
 struct Swarm {
   // Fluid on a lattice 0.7 apart with two bodies in it, in a periodic box.
   Swarm(const DpdParameters& fluid, double mass, int side, double tolerance = 1e-12)
-      : model(1, {fluid}) {
+      : model(1, {fluid}), nothing({.mass = mass, .kT = fluid.kT}) {
     box.size = support::uniform_vec<D>(0.7 * side);
     box.periodic.fill(true);
     for (const double where : {0.25, 0.7}) {
@@ -37,8 +37,6 @@ struct Swarm {
       particles.add(r, 0, 0);
     }
     DynamicsSettings settings;
-    settings.mass = mass;
-    settings.kT = fluid.kT;
     settings.reorder_every = 7;
     dynamics = std::make_unique<Dynamics<D>>(box, particles, model, nothing,
                                              make_solver({.name = "pcg", .tolerance = tolerance}),

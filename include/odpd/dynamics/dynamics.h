@@ -26,9 +26,6 @@ struct DynamicsSettings {
       {};  ///< of the pair list (length); none: what the motion makes cheapest
   bool hold_centre_of_mass = false;  ///< solve the problem of Scheme 2
   std::int64_t reorder_every = 100;  ///< steps between spatial reorderings of memory; 0: never
-  double mass = 0.0;                 ///< of every free particle
-  double zeta_0 = 0.0;  ///< uniform drag on every free particle, with its noise (mass/time)
-  double kT = 1.0;      ///< of that noise, and of the scene (energy)
 };
 
 /// What a time step adds to the friction of a solve.
@@ -66,6 +63,8 @@ class Dynamics {
   const PairModel<D>& model() const { return model_; }
   const Surroundings<D>& surroundings() const { return surroundings_; }
   const DynamicsSettings& settings() const { return settings_; }
+  /// Those of the surroundings.
+  const ParticleConstants& constants() const { return constants_; }
   /// How these particles move.
   Motion<D>& motion() { return motion_; }
 
@@ -103,8 +102,8 @@ class Dynamics {
   void solve(Stage<D>& stage, const Unknowns& load, const StepWeights& weights, Unknowns& guess);
 
   /// M = 2 m/dt.
-  double inertia(double dt) const { return 2.0 * settings_.mass / dt; }
-  bool has_mass() const { return settings_.mass > 0.0; }
+  double inertia(double dt) const { return 2.0 * constants_.mass / dt; }
+  bool has_mass() const { return constants_.mass > 0.0; }
 
   /// R on the sites: free particles and constituents.
   const Resistance<D>& resistance() const { return resistance_.sites(); }
@@ -129,6 +128,7 @@ class Dynamics {
   Particles<D>& particles_;
   const PairModel<D>& model_;
   const Surroundings<D>& surroundings_;
+  const ParticleConstants constants_;
   Motion<D> motion_;
   std::unique_ptr<Solver> solver_;
   DynamicsSettings settings_;

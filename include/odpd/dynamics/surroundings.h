@@ -1,6 +1,7 @@
 #pragma once
-// What a scene imposes on the particles, as the dynamics sees it: external potentials and forces, the prescribed
-// motion of particles with known velocity, and the mirror that catches what should never arrive there.
+// What a scene imposes on the particles, as the dynamics sees it: what free particles have in common, external potentials
+// and forces, the prescribed motion of particles with known velocity, and the mirror that catches what should never arrive
+// there.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,10 +10,18 @@
 
 namespace odpd {
 
+/// The same for all free particles of a scene, through all of a run.
+struct ParticleConstants {
+  double mass = 0.0;
+  double zeta_0 = 0.0;  ///< uniform drag, with its noise (mass/time)
+  double kT = 1.0;      ///< of that noise, and the largest of the scene's pairs (energy)
+};
+
 template <int D>
 class Surroundings {
  public:
   virtual ~Surroundings() = default;
+  virtual ParticleConstants constants() const = 0;
   /// Adds the forces of potentials (smooth walls) on free particles.
   virtual void add_potential_forces(const Particles<D>& particles,
                                     std::span<const Vec<D>> positions,
@@ -41,6 +50,9 @@ class Surroundings {
 template <int D>
 class NoSurroundings : public Surroundings<D> {
  public:
+  NoSurroundings() = default;
+  explicit NoSurroundings(const ParticleConstants& constants) : constants_(constants) {}
+  ParticleConstants constants() const override { return constants_; }
   void add_potential_forces(const Particles<D>&, std::span<const Vec<D>>,
                             std::vector<Vec<D>>&) const override {}
   double potential_energy_at(const Vec<D>&) const override { return 0.0; }
@@ -52,6 +64,9 @@ class NoSurroundings : public Surroundings<D> {
                           std::vector<Vec<D>>&) const override {}
   Vec<D> known_velocity(std::int32_t, double) const override { return {}; }
   bool confine(Vec<D>&) const override { return false; }
+
+ private:
+  ParticleConstants constants_;
 };
 
 }  // namespace odpd

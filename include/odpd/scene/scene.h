@@ -40,6 +40,9 @@ class Scene : public Surroundings<D> {
   }
   std::size_t body_kind(std::size_t body) const { return body_kind_[body]; }
 
+  ParticleConstants constants() const override {
+    return {settings_.mass, settings_.zeta_0, largest_kT()};
+  }
   void add_potential_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
                             std::vector<Vec<D>>& force) const override;
   double potential_energy_at(const Vec<D>& r) const override;
