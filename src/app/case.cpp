@@ -327,25 +327,6 @@ std::string portable_case(const Config& config) {
   return Config::from_text(config.resolved(), "case.toml", absolute).resolved();
 }
 
-std::vector<std::pair<std::string, std::string>> fixed_values(const Config& config) {
-  std::vector<std::pair<std::string, std::string>> values;
-  for (const auto& value : config.flattened()) {
-    const std::string& path = value.first;
-    const auto in = [&](std::string_view table) { return path.rfind(table, 0) == 0; };
-    if (path == "title" || path == "run.duration" || path == "run.blow_up" ||
-        path == "start.file" || path == "bonds.file" || path == "fluid.calibration" ||
-        path == "check")
-      continue;
-    if (in("run.until.")) continue;
-    // Holding the centre of mass is another problem, not another solver.
-    if (in("solver.") && path != "solver.hold_centre_of_mass") continue;
-    if (in("output.") || in("check.")) continue;
-    values.push_back(value);
-  }
-  std::sort(values.begin(), values.end());
-  return values;
-}
-
 template void read_start_file<2>(SceneSettings<2>&);
 template void read_start_file<3>(SceneSettings<3>&);
 

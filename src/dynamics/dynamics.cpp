@@ -30,6 +30,32 @@ std::vector<double> resisted(const Stage<D>& stage, const DofMap<D>& dofs,
 
 }  // namespace
 
+void SolverStatistics::add(const SolveReport& report) {
+  ++solves;
+  iterations += report.iterations;
+  most_iterations = std::max(most_iterations, report.iterations);
+  worst_residual = std::max(worst_residual, report.residual);
+  problem = report.problem;
+}
+
+void SolverStatistics::save(StateWriter& out) const {
+  out.write("solver_counts",
+            std::vector<std::int64_t>{solves, iterations, most_iterations, clamped, fallbacks});
+  out.write("solver_worst_residual", std::vector<double>{worst_residual});
+  out.write_text("solver_problem", problem);
+}
+
+void SolverStatistics::load(const StateReader& in) {
+  const std::vector<std::int64_t> counts = in.read_integers("solver_counts");
+  solves = counts.at(0);
+  iterations = counts.at(1);
+  most_iterations = counts.at(2);
+  clamped = counts.at(3);
+  fallbacks = counts.at(4);
+  worst_residual = in.read_doubles("solver_worst_residual").at(0);
+  problem = in.read_text("solver_problem");
+}
+
 template <int D>
 Dynamics<D>::Dynamics(const Box<D>& box, Particles<D>& particles, const PairModel<D>& model,
                       const Surroundings<D>& surroundings, std::unique_ptr<Solver> solver,
@@ -186,11 +212,7 @@ void Dynamics<D>::note(const SolveReport& report) {
   if (!report.converged)
     throw SolverError(
         fmt::format("solver '{}' did not converge: {}", solver_->name(), report.failure));
-  ++statistics_.solves;
-  statistics_.iterations += report.iterations;
-  statistics_.most_iterations = std::max(statistics_.most_iterations, report.iterations);
-  statistics_.worst_residual = std::max(statistics_.worst_residual, report.residual);
-  statistics_.problem = report.problem;
+  statistics_.add(report);
   if (report.note.empty()) return;
   if (++statistics_.fallbacks == 1) log_warning(fmt::format("solver: {}", report.note));
 }

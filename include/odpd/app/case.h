@@ -67,8 +67,5 @@ void read_start_file(SceneSettings<D>& scene);
 
 /// The resolved case as TOML, its start, bond and calibration files absolute: it runs from whatever directory it is put in.
 std::string portable_case(const Config& config);
-/// The values that a restart must find unchanged: all but title, run.duration, run.until, run.blow_up, start.file, bonds.file and fluid.calibration (whose
-/// contents are in the checkpoint), [solver] (but not solver.hold_centre_of_mass), [output] and [[check]].
-std::vector<std::pair<std::string, std::string>> fixed_values(const Config& config);
 
 }  // namespace odpd

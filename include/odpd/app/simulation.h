@@ -9,10 +9,10 @@
 #include "odpd/analysis/observer.h"
 #include "odpd/app/blow_up.h"
 #include "odpd/app/case.h"
+#include "odpd/app/scene_frame.h"
 #include "odpd/core/error.h"
 #include "odpd/dynamics/integrator.h"
 #include "odpd/io/checkpoint_file.h"
-#include "odpd/io/frame.h"
 #include "odpd/scene/scene.h"
 
 namespace odpd {
@@ -48,7 +48,7 @@ class Simulation {
   }
   bool stopped_at_target() const { return stopped_at_target_; }
 
-  Frame frame() const;
+  Frame frame() const { return scene_frame(scene_, clock_); }
   Results results() const;
   /// Particles the mirror caught during the measured part: every check fails when there were any.
   std::int64_t alarm_crossings() const { return alarm_crossings_; }

@@ -45,6 +45,10 @@ struct SolverStatistics {
   std::int64_t fallbacks = 0;  ///< solves whose preconditioner was given up
   std::int64_t clamped = 0;    ///< negative stiffnesses that an implicit step left out
   std::string problem;         ///< which problem was solved, in words
+
+  void add(const SolveReport& report);
+  void save(StateWriter& out) const;
+  void load(const StateReader& in);
 };
 
 template <int D>
