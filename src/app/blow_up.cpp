@@ -30,7 +30,7 @@ double two_digits_down(double x) {
 }  // namespace
 
 bool repulsion_is_explicit(const IntegratorSettings& integrator) {
-  return integrator.name != "implicit" && integrator.name != "monte-carlo";
+  return integrator_traits(integrator.name).repulsion_limits_dt;
 }
 
 template <int D>
@@ -204,9 +204,8 @@ std::int64_t BlowUpWatch<D>::fastest() const {
 template <int D>
 double BlowUpWatch<D>::friction_limit(const IntegratorSettings& integrator,
                                       const Stage<D>& stage) const {
-  const bool limited =
-      integrator.name == "velocity-verlet" || (integrator.name == "setd" && integrator.order > 1);
-  if (!limited) return std::numeric_limits<double>::infinity();
+  const int from = integrator_traits(integrator.name).friction_limits_dt_from;
+  if (from == 0 || integrator.order < from) return std::numeric_limits<double>::infinity();
   std::vector<std::array<double, static_cast<std::size_t>(D * D)>> blocks(stage.position.size());
   add_friction_blocks<D>(stage.network, blocks);
   double trace = 0.0;

@@ -26,6 +26,7 @@ std::int64_t steps_of(const Config& run, const std::string& key, double time, do
 SolverOptions read_solver(const Config& config, bool& hold_centre_of_mass) {
   SolverOptions options;
   options.name = config.choice("name", solver_names(), options.name);
+  const SolverTraits& traits = solver_traits(options.name);
   options.tolerance = config.positive("tolerance", options.tolerance);
   if (options.tolerance >= 1.0) config.fail("tolerance", "must be below 1");
   options.max_iterations = config.positive_integer("max_iterations", options.max_iterations);
@@ -34,13 +35,12 @@ SolverOptions read_solver(const Config& config, bool& hold_centre_of_mass) {
                          : Stopping::residual;
   options.petsc_options = config.text("petsc_options", "");
   options.preconditioner = config.choice("preconditioner", preconditioner_names(), "auto");
-  if (options.preconditioner != "auto" && options.name != "pcg")
+  if (options.preconditioner != "auto" && !traits.preconditioned)
     config.fail("preconditioner",
                 "only solver.name = \"pcg\" has a choice of preconditioners: "
                 "leave this key out");
-  const bool scheme_2 = options.name == "picard-deflated";
-  hold_centre_of_mass = config.boolean("hold_centre_of_mass", scheme_2);
-  if (scheme_2 && !hold_centre_of_mass)
+  hold_centre_of_mass = config.boolean("hold_centre_of_mass", traits.holds_centre_of_mass);
+  if (traits.holds_centre_of_mass && !hold_centre_of_mass)
     config.fail("hold_centre_of_mass",
                 "picard-deflated (Scheme 2) holds the centre of mass still by construction: leave "
                 "this key out, or choose another solver");
@@ -263,8 +263,9 @@ CaseSettings read_case(const Config& config, const std::string& name) {
   c.dynamics.seed = static_cast<std::uint64_t>(config.integer("seed", 1));
   const Config integrator = config.table("integrator");
   c.integrator = read_integrator(integrator);
-  c.clock.dt = c.integrator.name == "monte-carlo" ? integrator.positive("dt", 1.0)
-                                                  : integrator.positive("dt");
+  // Sweeps of Monte Carlo are counted.
+  c.clock.dt = integrator_traits(c.integrator.name).in_time ? integrator.positive("dt")
+                                                            : integrator.positive("dt", 1.0);
   c.solver = read_solver(config.table("solver"), c.dynamics.hold_centre_of_mass);
   const Config neighbours = config.table("neighbours");
   if (neighbours.has("skin")) c.dynamics.skin = neighbours.non_negative("skin");

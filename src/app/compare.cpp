@@ -98,14 +98,16 @@ double relative_difference(const std::vector<double>& a, const std::vector<doubl
 template <int D>
 Row measure(const FrozenProblem<D>& problem, SolverOptions options, double tolerance,
             bool increment_rule) {
-  const bool scheme_2 = options.name == "picard-deflated";
-  const System& system = scheme_2 ? problem.held.system() : problem.as_posed.system();
-  const std::vector<double>& exact = scheme_2 ? problem.exact_held : problem.exact_as_posed;
+  const SolverTraits& traits = solver_traits(options.name);
+  const System& system =
+      traits.holds_centre_of_mass ? problem.held.system() : problem.as_posed.system();
+  const std::vector<double>& exact =
+      traits.holds_centre_of_mass ? problem.exact_held : problem.exact_as_posed;
   options.tolerance = tolerance;
-  const bool picard = options.name == "picard" || scheme_2;
-  options.stopping = picard && increment_rule ? Stopping::increment : Stopping::residual;
-  if (options.name != "petsc") options.petsc_options.clear();
-  if (options.name != "pcg") options.preconditioner = "auto";
+  options.stopping =
+      traits.knows_increment && increment_rule ? Stopping::increment : Stopping::residual;
+  if (!traits.takes_options) options.petsc_options.clear();
+  if (!traits.preconditioned) options.preconditioner = "auto";
   Row row;
   row.solver = options.name;
   row.tolerance = tolerance;

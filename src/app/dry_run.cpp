@@ -31,8 +31,8 @@ std::string modelled_motion(const Simulation<D>& simulation) {
               fmt::format("{}, integrator {}", solves, simulation.integrator().name()));
   if (solves == 0) return out;
   const std::string& solver = simulation.settings().solver.name;
-  const bool assembled = solver == "eigen-cg" || solver == "cholmod" || solver == "petsc";
-  out += line(assembled, "assembled matrix", fmt::format("solver {}", solver));
+  out +=
+      line(solver_traits(solver).assembles, "assembled matrix", fmt::format("solver {}", solver));
   return out;
 }
 
@@ -42,7 +42,7 @@ std::string modelled(const Simulation<D>& simulation) {
   std::string out = "Modelled (+) and left out (-)\n";
   out += line(scene.model().conservative(), "conservative force",
               scene.model().conservative() ? "a > 0" : "a = 0");
-  if (!simulation.integrator().in_time()) {
+  if (!simulation.in_time()) {
     out += line(false, "motion in time", "monte-carlo samples equilibrium by trial moves");
   } else {
     out += modelled_motion(simulation);
@@ -57,10 +57,9 @@ std::string modelled(const Simulation<D>& simulation) {
 // One step, or sweep, is tried on the scene that nobody will go on with.
 template <int D>
 std::string trial_text(Simulation<D>& simulation) {
-  const std::string steps =
-      simulation.integrator().in_time()
-          ? fmt::format("steps of dt = {}, nothing to solve", simulation.clock().dt)
-          : std::string("sweeps");
+  const std::string steps = simulation.in_time() ? fmt::format("steps of dt = {}, nothing to solve",
+                                                               simulation.clock().dt)
+                                                 : std::string("sweeps");
   const Clock clock = simulation.clock();
   const Stopwatch watch;
   simulation.step();

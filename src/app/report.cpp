@@ -47,7 +47,7 @@ JsonObject solver_json(const Simulation<D>& simulation) {
       .set("most_iterations", s.most_iterations);
   json.set("iterations_per_solve", static_cast<double>(s.iterations) / solves);
   json.set("worst_residual", s.worst_residual);
-  if (options.name == "pcg")
+  if (solver_traits(options.name).preconditioned)
     json.set("preconditioner", options.preconditioner).set("fallbacks", s.fallbacks);
   return json;
 }

@@ -33,7 +33,7 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings)
       dynamics_(scene_.box(), scene_.particles(), scene_.model(), scene_,
                 make_solver(settings_.solver), settings_.dynamics),
       integrator_(make_integrator<D>(settings_.integrator)),
-      observers_(make_observers(config, scene_, clock_, integrator_->in_time())),
+      observers_(make_observers(config, scene_, clock_, in_time())),
       watch_of_state_(scene_, settings_.blow_up) {
   if (const std::string why = mass_objection(settings_.integrator.name, dynamics_.constants().mass);
       !why.empty())
@@ -66,9 +66,8 @@ void Simulation<D>::check_observables(const Config& config) const {
 template <int D>
 void Simulation<D>::check_observable(const Config& entry) const {
   std::vector<std::string> names{"energy_per_particle", "pressure", "config_temperature"};
-  if (dynamics_.constants().mass > 0.0 && integrator_->in_time())
-    names.push_back("kinetic_temperature");
-  if (integrator_->in_time()) names.push_back("diffusion");
+  if (dynamics_.constants().mass > 0.0 && in_time()) names.push_back("kinetic_temperature");
+  if (in_time()) names.push_back("diffusion");
   if (!scene_.settings().walls.empty()) names.push_back("alarm_crossings");
   for (const auto& observer : observers_) names.push_back(observer->settings().name);
   const std::string observable = entry.text("observable");

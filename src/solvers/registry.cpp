@@ -19,7 +19,7 @@ namespace {
 struct Row {
   const char* name;
   std::unique_ptr<Solver> (*make)(const SolverOptions&);  // null: not in this build
-  bool knows_increment;
+  SolverTraits traits;
 };
 
 #if ODPD_WITH_PETSC
@@ -28,12 +28,15 @@ constexpr auto petsc_maker = &make_petsc;
 constexpr std::unique_ptr<Solver> (*petsc_maker)(const SolverOptions&) = nullptr;
 #endif
 
-constexpr std::array<Row, 6> table{{{"picard", &make_picard, true},
-                                    {"picard-deflated", &make_picard_deflated, true},
-                                    {"pcg", &make_pcg, false},
-                                    {"eigen-cg", &make_eigen_cg, false},
-                                    {"cholmod", &make_cholmod, false},
-                                    {"petsc", petsc_maker, false}}};
+constexpr std::array<Row, 6> table{
+    {{"picard", &make_picard, {.knows_increment = true}},
+     {"picard-deflated",
+      &make_picard_deflated,
+      {.knows_increment = true, .holds_centre_of_mass = true}},
+     {"pcg", &make_pcg, {.preconditioned = true}},
+     {"eigen-cg", &make_eigen_cg, {.assembles = true}},
+     {"cholmod", &make_cholmod, {.assembles = true}},
+     {"petsc", petsc_maker, {.assembles = true, .takes_options = true}}}};
 
 const Row& find(const std::string& name) {
   const auto row =
@@ -47,6 +50,8 @@ const Row& find(const std::string& name) {
 }
 
 }  // namespace
+
+const SolverTraits& solver_traits(const std::string& name) { return find(name).traits; }
 
 std::vector<std::string> preconditioner_names() { return {"auto", "multilevel", "block-jacobi"}; }
 
@@ -78,7 +83,7 @@ std::unique_ptr<Solver> make_solver(const SolverOptions& options) {
   if (options.max_iterations < 1)
     throw ConfigError(
         fmt::format("solver.max_iterations = {} must be at least 1", options.max_iterations));
-  if (options.stopping == Stopping::increment && !row.knows_increment)
+  if (options.stopping == Stopping::increment && !row.traits.knows_increment)
     throw ConfigError(fmt::format(
         "solver.stopping = \"increment\" is the rule of picard and picard-deflated; {} stops by "
         "the residual",
@@ -89,10 +94,10 @@ std::unique_ptr<Solver> make_solver(const SolverOptions& options) {
     throw ConfigError(
         fmt::format("solver.preconditioner = \"{}\": no such preconditioner; the names are {}",
                     options.preconditioner, fmt::join(preconditioners, ", ")));
-  if (options.preconditioner != "auto" && options.name != "pcg")
+  if (options.preconditioner != "auto" && !row.traits.preconditioned)
     throw ConfigError(fmt::format(
         "solver.preconditioner is a choice of solver.name = \"pcg\", not of \"{}\"", options.name));
-  if (!options.petsc_options.empty() && options.name != "petsc")
+  if (!options.petsc_options.empty() && !row.traits.takes_options)
     throw ConfigError(fmt::format("solver.petsc_options needs solver.name = \"petsc\", not \"{}\"",
                                   options.name));
   return row.make(options);

@@ -30,6 +30,8 @@ class Simulation {
   const Dynamics<D>& dynamics() const { return dynamics_; }
   const Scene<D>& scene() const { return scene_; }
   const Integrator<D>& integrator() const { return *integrator_; }
+  /// As IntegratorTraits::in_time.
+  bool in_time() const { return integrator_traits(settings_.integrator.name).in_time; }
   const std::vector<std::unique_ptr<Observer<D>>>& observers() const { return observers_; }
 
   /// One step and the measurements that are due after it.

@@ -30,8 +30,6 @@ class Integrator {
   virtual std::string name() const = 0;
   /// Solves per step.
   virtual int solves() const = 0;
-  /// Steps are steps in time. Otherwise (Monte Carlo sweeps) there are no velocities, and only positions mean something.
-  virtual bool in_time() const { return true; }
   /// Throws ConfigError when the scheme has no answer for this scene. To be called before the first step.
   virtual void check(Dynamics<D>&) {}
   /// What a user must know before believing its results; empty when there is nothing.
@@ -69,6 +67,21 @@ std::vector<double> by_identity(Dynamics<D>& dynamics, const std::vector<double>
 template <int D>
 std::vector<double> from_identity(Dynamics<D>& dynamics, const std::vector<double>& values);
 
+enum class Masses { any, zero, positive };
+
+/// What holds for a scheme whatever it runs: columns of the table of integrators (src/dynamics/registry.cpp).
+struct IntegratorTraits {
+  Masses masses = Masses::any;  ///< that it takes
+  /// Steps are steps in time. Otherwise (Monte Carlo sweeps) there are no velocities, and only positions mean something.
+  bool in_time = true;
+  bool moves_bodies = true;  ///< rigid bodies of unknown motion
+  bool runs_sheared = true;  ///< under [shear]
+  /// Explicit in the conservative force: its stiffness limits dt.
+  bool repulsion_limits_dt = true;
+  /// Explicit in the friction: m/friction limits dt, in schemes with the key `order` from this order on. 0: it does not.
+  int friction_limits_dt_from = 0;
+};
+
 /// [integrator] of a case file; keys that a scheme does not use are not read.
 struct IntegratorSettings {
   std::string name = "trapezoidal";
@@ -80,6 +93,8 @@ struct IntegratorSettings {
 };
 
 std::vector<std::string> integrator_names();
+/// Throws ConfigError for an unknown name, listing the names.
+const IntegratorTraits& integrator_traits(const std::string& name);
 /// Reads the table [integrator] but its dt. Throws ConfigError.
 IntegratorSettings read_integrator(const Config& config);
 /// Why this integrator cannot run particles of this mass, with the remedy; empty when it can.

@@ -30,7 +30,6 @@ class MonteCarlo : public Integrator<D> {
 
   std::string name() const override { return "monte-carlo"; }
   int solves() const override { return 0; }
-  bool in_time() const override { return false; }
   void check(Dynamics<D>& dynamics) override;
   std::string summary() const override;
   /// One sweep. The record holds its start, with zero velocities. One object serves one Dynamics.

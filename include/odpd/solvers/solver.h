@@ -117,6 +117,18 @@ class Solver {
   std::vector<double> refined_;     // x + correction
 };
 
+/// What holds for a solver whatever it solves: columns of the table of solvers (src/solvers/registry.cpp).
+struct SolverTraits {
+  bool knows_increment = false;  ///< Stopping::increment
+  bool assembles = false;        ///< wants A as a matrix
+  bool preconditioned = false;   ///< SolverOptions::preconditioner
+  bool takes_options = false;    ///< SolverOptions::petsc_options
+  bool holds_centre_of_mass =
+      false;  ///< solves problems with the centre of mass held still, and no others
+};
+/// Throws ConfigError for an unknown name, listing the names.
+const SolverTraits& solver_traits(const std::string& name);
+
 /// Preconditioners of pcg, SolverOptions::preconditioner.
 std::vector<std::string> preconditioner_names();
 /// Names make_solver accepts, in table order. `available_solvers` leaves out what this build lacks.
