@@ -34,8 +34,8 @@ auto Dynamics<D>::without_sliding_springs(const Stage<D>& stage, const StepWeigh
   return load;
 }
 
-/// Relative to the flow at their places the nodes that translations move do not move in the mean: the same wherever the box
-/// is cut.
+/// Relative to the flow at their places the nodes that translations move do not move in the mean: the same wherever the
+/// box is cut.
 template <int D>
 void Dynamics<D>::add_mean_flow(const Stage<D>& stage, Unknowns& q) {
   Vec<D> mean{};

@@ -27,7 +27,8 @@ std::vector<std::int32_t> Motion<D>::moving_images() const {
   return images;
 }
 
-/// After a move from moving images `before`: what velocities lose. `Particles::velocity` becomes that of what is in the box.
+/// After a move from moving images `before`: what velocities lose. `Particles::velocity` becomes that of what is in the
+/// box.
 template <int D>
 void Motion<D>::leave_images(const std::vector<std::int32_t>& before) {
   faces_crossed_.assign(before.size(), Vec<D>{});

@@ -63,7 +63,8 @@ void Shardlow<D>::kick(Dynamics<D>& dynamics, double dt, std::vector<Vec<D>>& ve
       velocity[i] += weight * (stage.potential_force[i] + stage.driving_force[i]);
 }
 
-// Friction and noise of all pairs. The record gets what friction at the start's velocities leaves of the force that acted.
+// Friction and noise of all pairs. The record gets what friction at the start's velocities leaves of the force that
+// acted.
 template <int D>
 void Shardlow<D>::exchange(Dynamics<D>& dynamics, const Clock& clock,
                            std::vector<Vec<D>>& velocity) {

@@ -10,9 +10,9 @@ namespace odpd {
 template <int D>
 void save_case(const Config& config, const Scene<D>& scene, StateWriter& run);
 
-/// Throws ConfigError naming the first value that is another one now. Free to change are title, run.duration, run.until,
-/// run.blow_up, [solver] (but not solver.hold_centre_of_mass), [output], [[check]] and the names of other files, whose
-/// contents count.
+/// Throws ConfigError naming the first value that is another one now. Free to change are title, run.duration,
+/// run.until, run.blow_up, [solver] (but not solver.hold_centre_of_mass), [output], [[check]] and the names of other
+/// files, whose contents count.
 template <int D>
 void require_same_case(const StateReader& run, const Config& config, const Scene<D>& scene);
 

@@ -10,31 +10,30 @@
 //
 //   key = seed (64 bits), counter = (a, b, 64 bits of 2 step + stage)  ->  4 x 32 random bits
 //
-// For one seed the map from counters to bits is one to one, so any two of (step < 2^63, stage 0 or 1, a, b < 2^32) differ in
-// them. No other purpose draws from it, which keeps it apart from all the streams below.
+// For one seed the map from counters to bits is one to one, so any two of (step < 2^63, stage 0 or 1, a, b < 2^32)
+// differ in them. No other purpose draws from it, which keeps it apart from all the streams below.
 #include <array>
 #include <cstdint>
 #include <span>
 
 namespace odpd {
 
-/// What a number is for. Two uses never share a stream, so adding one changes no other.
+/// What a number is for. Two uses never share a stream, so adding one changes no other. In brackets: the counter.
 enum class Stream : std::uint64_t {
   pair_noise = 1,  ///< stands for F_B of the edges, drawn by PairRandom (stage 0 along, 1 across)
-  start_positions = 2,  ///< random filling: counter (0, attempt, id, 0)
-  start_species = 3,    ///< which particle gets which species: counter (0, 0, id, 0)
-  overlap_direction =
-      4,      ///< fixed direction of an edge at r = 0: counter (0, 0, lower id, higher id)
-  probe = 5,  ///< random vectors of tests and of `compare`: counter (k, 0, i, 0)
-  start_velocities = 6,  ///< Maxwell velocities of particles with mass: counter (0, 0, id, 0)
-  drag_noise = 7,        ///< noise of the uniform drag zeta_0: counter (step, 0, id, 0)
-  monte_carlo =
-      8,  ///< trial moves: counter (sweep, 0, id, 0): D displacements, acceptance; of bodies (sweep, 1, body, 0)
-          ///< and their turns (sweep, 2, body, 0)
-  molecules =
-      12,  ///< places of molecules: counter (attempt, 0, molecule, 0), turns (.., 1, ..), steps of a walk
-           ///< (attempt, 2 + trial, molecule, bead)
-  body_poses = 9,  ///< places and orientations of bodies: counter (attempt, 0 or 1, body, 0)
+  start_positions = 2,    ///< random filling (0, attempt, id, 0)
+  start_species = 3,      ///< which particle gets which species (0, 0, id, 0)
+  overlap_direction = 4,  ///< fixed direction of an edge at r = 0 (0, 0, lower id, higher id)
+  probe = 5,              ///< random vectors of tests and of `compare` (k, 0, i, 0)
+  start_velocities = 6,   ///< Maxwell velocities of particles with mass (0, 0, id, 0)
+  drag_noise = 7,         ///< noise of the uniform drag zeta_0 (step, 0, id, 0)
+  /// Trial moves (sweep, 0, id, 0): D displacements, acceptance. Of bodies (sweep, 1, body, 0), their turns
+  /// (sweep, 2, body, 0).
+  monte_carlo = 8,
+  body_poses = 9,  ///< places and orientations of bodies (attempt, 0 or 1, body, 0)
+  /// Places of molecules (attempt, 0, molecule, 0), turns (attempt, 1, molecule, 0), steps of a walk
+  /// (attempt, 2 + trial, molecule, bead).
+  molecules = 12,
 };
 
 /// Uniform and normal numbers of one seed and stream.
@@ -55,9 +54,9 @@ class CounterRandom {
   std::uint64_t stream_;
 };
 
-/// Independent standard normal numbers of many pairs (a, b) in one step, by Box-Muller, sqrt(-2 log u) cos(2 pi v), with
-/// polynomials for log and cos whose relative error is below 1e-12. Bits are those of the instruction path (core/isa.h),
-/// whatever the number of pairs asked for at once.
+/// Independent standard normal numbers of many pairs (a, b) in one step, by Box-Muller, sqrt(-2 log u) cos(2 pi v),
+/// with polynomials for log and cos whose relative error is below 1e-12. Bits are those of the instruction path
+/// (core/isa.h), whatever the number of pairs asked for at once.
 class PairRandom {
  public:
   PairRandom(std::uint64_t seed, std::uint64_t step) : seed_(seed), step_(step) {}

@@ -9,8 +9,8 @@ struct Clock {
   std::int64_t step = 0;                 ///< steps done
   std::int64_t equilibration_steps = 0;  ///< nothing is measured during these
   std::int64_t total_steps = 0;          ///< equilibration included
-  bool sampled =
-      true;  ///< somebody looks at the coming step: where not, what only observers read may be left out
+  /// Somebody looks at the coming step. Where not, what only observers read may be left out.
+  bool sampled = true;
 
   double time() const { return static_cast<double>(step) * dt; }
   bool finished() const { return step >= total_steps; }

@@ -22,18 +22,17 @@ namespace odpd {
 
 struct DynamicsSettings {
   std::uint64_t seed = 1;
-  std::optional<double> skin =
-      {};  ///< of the pair list (length); none: what the motion makes cheapest
+  /// Of the pair list (length). None: what the motion makes cheapest.
+  std::optional<double> skin = {};
   bool hold_centre_of_mass = false;  ///< solve the problem of Scheme 2
   std::int64_t reorder_every = 100;  ///< steps between spatial reorderings of memory; 0: never
 };
 
 /// What a time step adds to the friction of a solve.
 struct StepWeights {
-  double inertia = 0.0;  ///< on the diagonal, M = 2 m/dt (mass/time)
-  double stiffness_time =
-      0.0;                 ///< theta dt, weight of max(k_c, 0) along each edge of a pair (time)
-  double bond_time = 0.0;  ///< the same along each bond (time)
+  double inertia = 0.0;         ///< on the diagonal, M = 2 m/dt (mass/time)
+  double stiffness_time = 0.0;  ///< theta dt, of max(k_c, 0) along each edge of a pair (time)
+  double bond_time = 0.0;       ///< the same along each bond (time)
 };
 
 /// Sums over all solves of a run.
@@ -56,8 +55,8 @@ class Dynamics {
  public:
   using Unknowns = std::vector<double>;
 
-  /// References must outlive this object. Gives the particles an `end_velocity` where they have mass. Throws ConfigError
-  /// when the box is too small for the cutoff.
+  /// References must outlive this object. Gives the particles an `end_velocity` where they have mass. Throws
+  /// ConfigError when the box is too small for the cutoff.
   Dynamics(const Box<D>& box, Particles<D>& particles, const PairModel<D>& model,
            const Surroundings<D>& surroundings, std::unique_ptr<Solver> solver,
            const DynamicsSettings& settings);
@@ -79,8 +78,8 @@ class Dynamics {
   }
   /// Brings memory into spatial order when this step is due for it (a function of the step number alone).
   void reorder_if_due(std::int64_t step);
-  /// Fills position, edges and forces of a stage at the given positions and time; with shear the positions may have left
-  /// the box since the step's start. Throws SolverError for a position that is not finite.
+  /// Fills a stage at these positions at this time: what Motion::locate does, edges and forces. Throws BlowUpError for
+  /// a position that is not finite.
   void evaluate(std::span<const Vec<D>> positions, double time, Stage<D>& stage);
   /// Draws F_B of the stage's edges and returns xi = P^T F_B, with the noise of the drag (zero, and nothing drawn, at
   /// kT = 0).
@@ -99,9 +98,9 @@ class Dynamics {
 
   /// Assembles A = P^T (R + K_pairs stiffness_time + K_bonds bond_time) P + zeta_0 + inertia at the stage.
   const System& assemble(const Stage<D>& stage, const StepWeights& weights);
-  /// Solves A q = load for the stage's velocities. `guess` in, answer out. With mass or drag and nothing of known
-  /// velocity, the mean of the answer is set to what momentum balance says, to rounding. Throws SolverError when the
-  /// solver did not converge or a velocity is not finite. With shear and nothing else to fix it, the mean of the answer is
+  /// Solves A q = load for the stage's velocities: `guess` in, answer out. Throws SolverError when the solver did not
+  /// converge, BlowUpError when a velocity is not finite. Where nothing has a known velocity, the mean of the answer is
+  /// exact: with mass or drag, and no bodies, it is what momentum balance says; with neither it is 0, or under shear
   /// that of the sheared flow.
   void solve(Stage<D>& stage, const Unknowns& load, const StepWeights& weights, Unknowns& guess);
 

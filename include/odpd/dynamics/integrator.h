@@ -43,8 +43,8 @@ class Integrator {
   virtual void save(StateWriter&) const {}
   virtual void load(const StateReader&) {}
 
-  /// Room for a stage between two steps, for whoever must look at the state; the next step overwrites it. (The edges of a
-  /// million particles are most of a run's memory.)
+  /// Room for a stage between two steps, for whoever must look at the state. The next step overwrites it. (The edges of
+  /// a million particles are most of a run's memory.)
   Stage<D>& spare_stage() { return record_.corrector; }
 
  protected:
@@ -72,13 +72,13 @@ enum class Masses { any, zero, positive };
 /// What holds for a scheme whatever it runs: columns of the table of integrators (src/dynamics/registry.cpp).
 struct IntegratorTraits {
   Masses masses = Masses::any;  ///< that it takes
-  /// Steps are steps in time. Otherwise (Monte Carlo sweeps) there are no velocities, and only positions mean something.
+  /// Steps are steps in time. Otherwise (Monte Carlo sweeps) there are no velocities; only positions mean something.
   bool in_time = true;
   bool moves_bodies = true;  ///< rigid bodies of unknown motion
   bool runs_sheared = true;  ///< under [shear]
   /// Explicit in the conservative force: its stiffness limits dt.
   bool repulsion_limits_dt = true;
-  /// Explicit in the friction: m/friction limits dt, in schemes with the key `order` from this order on. 0: it does not.
+  /// Explicit in the friction from this `order` on: m/friction limits dt. 0: never.
   int friction_limits_dt_from = 0;
 };
 

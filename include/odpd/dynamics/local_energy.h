@@ -3,8 +3,8 @@
 //
 //   U_i(r) = sum_{j != i, |r - r_j| < r_c} u(|r - r_j|) + U_bonds(r) + V(r)
 //
-// with u and U_bonds of the pair model and V of the surroundings: what a trial move changes. Particles are kept in cells one
-// cutoff wide, updated move by move.
+// with u and U_bonds of the pair model and V of the surroundings: what a trial move changes. Particles are kept in
+// cells one cutoff wide, updated move by move.
 #include <cstdint>
 #include <vector>
 

@@ -4,15 +4,16 @@
 //
 //   r' = r + step (2 u - 1),  u uniform in (0, 1)^D;   accepted with probability min(1, exp(-(U(r') - U(r))/kT))
 //
-// and then of every rigid body: its centre likewise, and its orientation by exp(step/radius (2 u - 1)) in the same trial;
-// // and rejected where r' leaves the box in a bounded direction. U: pair energies, wall potentials, and -f.r of a body
+// and then of every rigid body: its centre likewise, and its orientation by exp(step/radius (2 u - 1)) in the same
+// trial. Rejected where r' leaves the box in a bounded direction. U: pair energies, wall potentials, and -f.r of a body
 // force f along bounded directions.
 //
-// Exact for any fixed step: each trial move obeys detailed balance, and their order does not depend on positions (in
-// the spatial order of memory it would, and a sweep would no longer leave the distribution alone). The step is tuned
-// towards 40 % acceptance during equilibration only. integrator.dt counts sweeps and is no time: there are no velocities, and displacements say nothing
-// about diffusion. Breaks where there is no equilibrium: moving walls, a body force along a periodic direction, kT = 0,
-// pairs of different kT (all refused). Slow, not wrong, where particles are caged.
+// Exact for any fixed step: each trial move obeys detailed balance, and their order does not depend on positions. (In
+// the spatial order of memory it would, and a sweep would no longer leave the distribution alone.) The step is tuned
+// towards 40 % acceptance during equilibration only. integrator.dt counts sweeps and is no time: there are no
+// velocities, and displacements say nothing about diffusion. Slow, not wrong, where particles are caged. Breaks where
+// there is no equilibrium, and refuses all of these: moving walls, a body force along a periodic direction, kT = 0,
+// pairs of different kT.
 #include <cstdint>
 #include <memory>
 

@@ -43,8 +43,8 @@ class Motion {
   /// catches to `crossings`. Throws BlowUpError as `move`.
   std::vector<Vec<D>> displaced(const std::vector<Vec<D>>& velocity, double dt, double t,
                                 std::int64_t& crossings);
-  /// Moves the particles by dt velocity from time t on and remembers it; returns the mirror's catches. Throws BlowUpError
-  /// when a particle moves further than half the box in one step.
+  /// Moves the particles by dt velocity from time t on and remembers it; returns the mirror's catches. Throws
+  /// BlowUpError when a particle moves further than half the box in one step.
   std::int64_t move(const std::vector<Vec<D>>& velocity, double dt, double t);
   /// After `move`: velocities q of the step become those of the images that are now in the box.
   void cross_faces(Unknowns& q);
@@ -53,8 +53,8 @@ class Motion {
   Unknowns times_inertia(const Stage<D>& stage, const Unknowns& q, double inertia);
   /// The unknowns of the particles' end velocities (zeros where they carry none), at the stage of a step's start.
   Unknowns end_velocity(const Stage<D>& stage);
-  /// After `move`: sets them from momenta per mass p = P^T P q of the step, with the moments of inertia of where the bodies
-  /// are now, as those of the images that are now in the box.
+  /// After `move`: sets them from momenta per mass p = P^T P q of the step, with the moments of inertia of where the
+  /// bodies are now, as those of the images that are now in the box.
   void set_end_momentum(const Unknowns& p);
 
  private:
@@ -65,7 +65,8 @@ class Motion {
   std::vector<Vec<D>> arms_at(const Box<D>& box, std::span<const Vec<D>> positions);
   void place_arms(Stage<D>& stage);
   void count_boxes(std::size_t body, Stage<D>& stage);
-  /// Moves a pose of the body along velocities of its constituents, wrapped in `box`. False when that changes no position.
+  /// Moves a pose of the body along velocities of its constituents, wrapped in `box`. False when that changes no
+  /// position.
   bool advance(std::size_t body, const std::vector<Vec<D>>& velocity, double dt, const Box<D>& box,
                RigidPose<D>& pose);
   void place(std::size_t body, const RigidPose<D>& pose, const Box<D>& box,

@@ -5,8 +5,8 @@
 //
 //   u' = u e^{-zeta dt/mu} + sqrt(kT/mu (1 - e^{-2 zeta dt/mu})) w         (the same for each direction across e)
 //
-// then the uniform drag zeta_0 the same way per particle. One evaluation per step. Edges are taken colour by colour, where
-// the edges of a colour share no particle: the same bits on any thread count.
+// then the uniform drag zeta_0 the same way per particle. One evaluation per step. Edges are taken colour by colour,
+// where the edges of a colour share no particle: the same bits on any thread count.
 // Drift: with mass the equations have none to miss; equilibrium is sampled exactly as far as the splitting goes. Order
 // without noise: 1. Momentum is conserved to rounding. Stable for any friction, breaks by the conservative force, at dt
 // beyond some 0.5 gamma/a; the viscosity falls (-15 %) once dt exceeds m/zeta.

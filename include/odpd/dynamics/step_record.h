@@ -13,16 +13,17 @@ namespace odpd {
 template <int D>
 struct Stage {
   double time = 0.0;
-  Box<D> box;                    ///< with its images where they are at `time`
-  std::vector<Vec<D>> position;  ///< inside the box along periodic directions
-  std::vector<Vec<D>> arms;  ///< of constituents of bodies, zero for others; empty without bodies
-  PairNetwork<D> network;    ///< edges at `position`
+  Box<D> box;                           ///< with its images where they are at `time`
+  std::vector<Vec<D>> position;         ///< inside the box along periodic directions
+  std::vector<Vec<D>> arms;             ///< of constituents, zero for others; empty without bodies
+  PairNetwork<D> network;               ///< edges at `position`
   std::vector<Vec<D>> potential_force;  ///< conservative pair forces and wall potentials
   std::vector<Vec<D>> driving_force;    ///< body force
   std::vector<Vec<D>> velocity;         ///< solved (free) or prescribed (known)
-  /// With shear: boxes along the gradient from the image whose velocity this is to the one in the box. A particle keeps the
-  /// velocity of the image that it was at the step's start, a constituent that of the image hanging together with its body's
-  /// centre then, so that a body across the face moves as one; network.slip_0 holds the rest.
+  /// With shear: boxes along the gradient from the image whose velocity this is to the one in the box. In all of a step
+  /// a particle has the velocity of the image that it was at the step's start. A constituent has that of the image
+  /// hanging together with its body's centre then, so that a body across the face moves as one. network.slip_0 holds
+  /// the rest.
   std::vector<std::int32_t> crossed;
   SolveReport report;
 };
@@ -33,11 +34,10 @@ struct StepRecord {
   double dt = 0.0;
   std::vector<Vec<D>> v_start;  ///< velocity at the step's start, of variance kT/m; empty at m = 0
   Stage<D> start;               ///< at the step's start: r, v1
-  double start_weight =
-      1.0;             ///< of this stage in means over the stages; the second one has the rest
-  Stage<D> corrector;  ///< the second stage, where a scheme has one: r*, v2
-  std::vector<Vec<D>>
-      edge_noise;  ///< F_B on i per edge of start.network; empty at kT = 0 (shardlow: what acted beyond friction at the start)
+  double start_weight = 1.0;  ///< of this stage in means over the stages; the rest is the second's
+  Stage<D> corrector;         ///< the second stage, where a scheme has one: r*, v2
+  /// F_B on i, one per edge of start.network; empty at kT = 0. Of shardlow: what acted beyond friction at the start.
+  std::vector<Vec<D>> edge_noise;
   std::vector<Vec<D>> v_mid;         ///< velocity that moved each particle: displacement/dt
   std::int64_t alarm_crossings = 0;  ///< particles the mirror had to catch in this step
 

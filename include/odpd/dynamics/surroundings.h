@@ -1,7 +1,7 @@
 #pragma once
-// What a scene imposes on the particles, as the dynamics sees it: what free particles have in common, external potentials
-// and forces, the prescribed motion of particles with known velocity, and the mirror that catches what should never arrive
-// there.
+// What a scene imposes on the particles, as the dynamics sees it: what free particles have in common, external
+// potentials and forces, the prescribed motion of particles with known velocity, and the mirror that catches what
+// should never arrive there.
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -6,9 +6,9 @@
 //   r_{k+1} = r_k + dt v_k + dt^2/2 f_k,    w_{k+1} = v_k + lambda dt f_k
 //
 // Carried from step to step: the predicted velocity w and the half-way velocity v_k + dt/2 f_k.
-// Drift: with mass the equations have none to miss. Order without noise: 1, and 2 for lambda = 1. The kinetic temperature
-// is off by -(lambda - 1/2) x, x = dt/m times the mean friction of a particle: lambda = 1/2 is the better choice, 0.65 is
-// Groot and Warren's and what Nguyen 2021, Table 3.1, shows. Blows up where x exceeds about 2.
+// Drift: with mass the equations have none to miss. Order without noise: 1, and 2 for lambda = 1. The kinetic
+// temperature is off by -(lambda - 1/2) x, x = dt/m times the mean friction of a particle: lambda = 1/2 is the better
+// choice, 0.65 is Groot and Warren's and what Nguyen 2021, Table 3.1, shows. Blows up where x exceeds about 2.
 #include "odpd/dynamics/integrator.h"
 
 namespace odpd {

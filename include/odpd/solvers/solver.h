@@ -3,7 +3,7 @@
 //
 //   picard           x := x + D^-1 (b - A x), D diagonal blocks (Phan-Thien et al. 2016, eq. 24)
 //   picard-deflated  x := x + D^-1 Pi (b - A x) - E E^T x, Scheme 2  (ibid., eq. 41-46)
-//   pcg              conjugate gradients on the rank-1 operator in mixed precision, multilevel or block-Jacobi preconditioned
+//   pcg              conjugate gradients on the rank-1 operator in mixed precision, with multilevel or block-Jacobi
 //   eigen-cg         Eigen::ConjugateGradient on the assembled matrix
 //   cholmod          SuiteSparse sparse Cholesky
 //   petsc            PETSc KSP, any KSP and PC through PETSc options
@@ -38,15 +38,14 @@ struct SolverOptions {
 struct SolveReport {
   bool converged = false;
   std::int64_t iterations = 0;
-  double residual = 0.0;       ///< the true relative residual of the returned x
-  double setup_seconds = 0.0;  ///< of the last bind
-  double assembly_seconds =
-      0.0;  ///< part of bind spent in System::matrix and copying it to the backend
+  double residual = 0.0;          ///< the true relative residual of the returned x
+  double setup_seconds = 0.0;     ///< of the last bind
+  double assembly_seconds = 0.0;  ///< part of it: System::matrix and copying it to the backend
   double solve_seconds = 0.0;
-  std::int64_t memory_bytes =
-      0;  ///< matrices, factors and work vectors of the backend (its own estimate)
-  std::string
-      problem;  ///< "R v = f", "R v = f, null space removed", or "centre of mass held still"
+  /// Matrices, factors and work vectors of the backend (its own estimate).
+  std::int64_t memory_bytes = 0;
+  /// "R v = f", "R v = f, null space removed", or "centre of mass held still".
+  std::string problem;
   std::string failure;  ///< why it did not converge, with the remedy; empty when it did
   std::string note;     ///< what else is worth knowing, e.g. a preconditioner that was given up
 };
@@ -119,12 +118,11 @@ class Solver {
 
 /// What holds for a solver whatever it solves: columns of the table of solvers (src/solvers/registry.cpp).
 struct SolverTraits {
-  bool knows_increment = false;  ///< Stopping::increment
-  bool assembles = false;        ///< wants A as a matrix
-  bool preconditioned = false;   ///< SolverOptions::preconditioner
-  bool takes_options = false;    ///< SolverOptions::petsc_options
-  bool holds_centre_of_mass =
-      false;  ///< solves problems with the centre of mass held still, and no others
+  bool knows_increment = false;       ///< Stopping::increment
+  bool assembles = false;             ///< wants A as a matrix
+  bool preconditioned = false;        ///< SolverOptions::preconditioner
+  bool takes_options = false;         ///< SolverOptions::petsc_options
+  bool holds_centre_of_mass = false;  ///< Scheme 2: still by construction
 };
 /// Throws ConfigError for an unknown name, listing the names.
 const SolverTraits& solver_traits(const std::string& name);
