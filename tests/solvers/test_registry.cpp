@@ -5,6 +5,7 @@
 #include "odpd/core/error.h"
 #include "odpd/solvers/solver.h"
 #include "odpd/version.h"
+#include "solvers/toys.h"
 
 namespace {
 
@@ -46,6 +47,49 @@ TEST(SolverTable, RefusesContradictions) {
             std::string::npos);
   EXPECT_NE(message([](auto& o) { o.max_iterations = 0; }).find("solver.max_iterations"),
             std::string::npos);
+}
+
+class WatchedSystem : public odpd::AssembledSystem {
+ public:
+  using AssembledSystem::AssembledSystem;
+  const odpd::BlockCsr& matrix() const override {
+    assembled = true;
+    return AssembledSystem::matrix();
+  }
+  mutable bool assembled = false;
+};
+
+TEST(SolverTable, SaysWhichSolversWantAMatrix) {
+  for (const std::string& name : odpd::available_solvers()) {
+    const WatchedSystem system(toys::matrix(toys::clique(2, 20, 1), 0.5), false, true);
+    const std::vector<double> b = toys::random_vector(system.size());
+    std::vector<double> x(b.size());
+    odpd::SolverOptions options;
+    options.name = name;
+    const auto solver = odpd::make_solver(options);
+    solver->bind(system);
+    EXPECT_TRUE(solver->solve(b, x).converged) << name;
+    EXPECT_EQ(system.assembled, odpd::solver_traits(name).assembles) << name;
+  }
+}
+
+TEST(SolverTable, SaysWhichOptionsASolverTakes) {
+  for (const std::string& name : odpd::available_solvers()) {
+    const odpd::SolverTraits& traits = odpd::solver_traits(name);
+    const auto taken = [&](const auto& change) {
+      return message([&](auto& o) {
+               o.name = name;
+               change(o);
+             }) == "";
+    };
+    EXPECT_EQ(taken([](auto& o) { o.stopping = odpd::Stopping::increment; }),
+              traits.knows_increment)
+        << name;
+    EXPECT_EQ(taken([](auto& o) { o.preconditioner = "block-jacobi"; }), traits.preconditioned)
+        << name;
+    EXPECT_EQ(taken([](auto& o) { o.petsc_options = "-pc_type icc"; }), traits.takes_options)
+        << name;
+  }
 }
 
 TEST(SolverTable, SaysWhatThisBuildLacks) {
