@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "odpd/analysis/observer_keys.h"
 #include "odpd/operator/edge_sums.h"
 
 namespace odpd {
@@ -40,12 +41,11 @@ double shell(double a, double b) {
 template <int D>
 Bodies<D>::Bodies(ObserverSettings settings, BodiesSettings bodies, const Scene<D>& scene,
                   double dt, bool in_time)
-    : Observer<D>(std::move(settings)),
+    : Observer<D>(std::move(settings), scene.settings().bodies.size() * width + D),
       bodies_(bodies),
       in_time_(in_time),
       scene_(scene),
       bins_(static_cast<std::size_t>(std::llround(bodies.r_max / bodies.bin))),
-      average_(scene.settings().bodies.size() * width + D),
       density_(scene.settings().bodies.size() * bins_),
       places_(this->settings().name, bodies.msd.window, bodies.msd.fit_from,
               dt * static_cast<double>(this->settings().every), scene.settings().bodies.size()),
@@ -62,8 +62,25 @@ Bodies<D>::Bodies(ObserverSettings settings, BodiesSettings bodies, const Scene<
 }
 
 template <int D>
+std::unique_ptr<Observer<D>> Bodies<D>::make(const ObserverEntry<D>& entry) {
+  ObserverSettings settings = entry.settings(2);
+  const Config& config = entry.config;
+  if (entry.scene.settings().bodies.empty()) config.fail("kind", "the scene has no [[body]]");
+  BodiesSettings b;
+  b.msd = read_msd(entry);
+  b.r_max = read_r_max(entry);
+  b.bin = config.positive("bin", b.bin);
+  if (b.bin > b.r_max) config.fail("bin", "must be less than r_max");
+  b.empty = config.positive("empty", b.empty);
+  if (b.empty >= 1.0) config.fail("empty", "must be below 1, the mean density of the fluid");
+  return std::make_unique<Bodies<D>>(std::move(settings), b, entry.scene, entry.clock.dt,
+                                     entry.in_time);
+}
+
+template <int D>
 void Bodies<D>::add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& noise,
-                          const std::vector<Vec<D>>& noise_arms, double weight) {
+                          const std::vector<Vec<D>>& noise_arms, double weight,
+                          std::vector<double>& sample) const {
   std::vector<Vec<D>> force(stage.position.size());
   add_conservative_forces(stage.network, force);
   add_friction_forces<D>(stage.network, stage.velocity, force);
@@ -75,14 +92,15 @@ void Bodies<D>::add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& nois
       // The random torque acts with the arms of the step's start in both stages, as the scheme has it.
       moment += weight * (torque(stage.arms[p], force[p]) + torque(noise_arms[p], noise[p]));
     }
-    double* const out = &newest_[kind_[b] * width];
+    double* const out = &sample[kind_[b] * width];
     for (std::size_t c = 0; c < D; ++c) out[c] += share_[kind_[b]] * total.x[c];
     for (std::size_t c = 0; c < turns; ++c) out[D + c] += share_[kind_[b]] * moment.x[c];
   }
 }
 
 template <int D>
-void Bodies<D>::add_motion(const Particles<D>& particles, const StepRecord<D>& record) {
+void Bodies<D>::add_motion(const Particles<D>& particles, const StepRecord<D>& record,
+                           std::vector<double>& sample) const {
   std::vector<Vec<D>> arms, velocities;
   const Stage<D>& start = record.start;
   // Velocity of the sheared flow at the place of i less an arm. Where a body is held, the flow is not known.
@@ -104,7 +122,7 @@ void Bodies<D>::add_motion(const Particles<D>& particles, const StepRecord<D>& r
       motion = rigid_motion<D>(arms, velocities);
     if (scene_.body_settings(b).motion == BodyMotion::free)
       motion.velocity -= flow(members_[b][0], arms[0]);
-    double* const out = &newest_[kind_[b] * width + D + turns];
+    double* const out = &sample[kind_[b] * width + D + turns];
     for (std::size_t c = 0; c < D; ++c) out[c] += share_[kind_[b]] * motion.velocity.x[c];
     for (std::size_t c = 0; c < turns; ++c) out[D + c] += share_[kind_[b]] * motion.angular.x[c];
   }
@@ -112,7 +130,7 @@ void Bodies<D>::add_motion(const Particles<D>& particles, const StepRecord<D>& r
   for (std::size_t i = 0; i < record.v_mid.size(); ++i)
     if (particles.is_free(i))
       for (std::size_t c = 0; c < D; ++c)
-        newest_[names_.size() * width + c] += share * (record.v_mid[i] - flow(i, {})).x[c];
+        sample[names_.size() * width + c] += share * (record.v_mid[i] - flow(i, {})).x[c];
 }
 
 template <int D>
@@ -164,7 +182,7 @@ void Bodies<D>::count_fluid(const Particles<D>& particles, const Stage<D>& stage
 
 template <int D>
 void Bodies<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
-  newest_.assign(average_.width(), 0.0);
+  std::vector<double> sample(this->average().width(), 0.0);
   const std::vector<std::int32_t> index = particles.index_of_id();
   members_.assign(kind_.size(), {});
   for (std::size_t b = 0; b < kind_.size(); ++b)
@@ -173,11 +191,11 @@ void Bodies<D>::measure(const Clock&, const Particles<D>& particles, const StepR
   std::vector<Vec<D>> noise(record.start.position.size());
   if (!record.edge_noise.empty())
     add_edge_forces<D>(record.start.network, record.edge_noise, noise);
-  add_stage(record.start, noise, record.start.arms, record.start_weight);
+  add_stage(record.start, noise, record.start.arms, record.start_weight, sample);
   if (record.has_corrector())
-    add_stage(record.corrector, noise, record.start.arms, 1.0 - record.start_weight);
-  add_motion(particles, record);
-  average_.add(newest_);
+    add_stage(record.corrector, noise, record.start.arms, 1.0 - record.start_weight, sample);
+  add_motion(particles, record, sample);
+  this->add(std::move(sample));
   if (in_time_) follow(particles);
   count_fluid(particles, record.start);
 }
@@ -216,12 +234,10 @@ double Bodies<D>::exclusion_radius(std::size_t kind) const {
 template <int D>
 void Bodies<D>::add_diffusion(const std::string& name, std::size_t kind, Results& results) const {
   if (!in_time_ || scene_.settings().bodies[kind].motion != BodyMotion::free) return;
-  if (places_.windows() == 0) {
+  if (places_.windows() == 0)
     results.notes.push_back(fmt::format(
         "{}: the measured part is shorter than the window of {}, so no diffusion coefficients",
         this->settings().name, bodies_.msd.window));
-    return;
-  }
   results.scalars.push_back({name + ".diffusion", places_.diffusion().mean(kind),
                              places_.diffusion().standard_error(kind)});
   if (scene_.box().shear) return;  // the flow turns them, which is no diffusion
@@ -231,13 +247,12 @@ void Bodies<D>::add_diffusion(const std::string& name, std::size_t kind, Results
 
 template <int D>
 void Bodies<D>::add_results(Results& results) const {
-  if (average_.samples() == 0) return;
   const std::string& observer = this->settings().name;
   std::size_t column = 0;
   const auto add = [&](const std::string& what, std::size_t count) {
     for (std::size_t c = 0; c < count; ++c, ++column)
-      results.scalars.push_back({count == 1 ? what : fmt::format("{}.{}", what, "xyz"[c]),
-                                 average_.mean(column), average_.standard_error(column)});
+      results.scalars.push_back(
+          this->mean_of(column, count == 1 ? what : fmt::format("{}.{}", what, "xyz"[c])));
   };
   Table table;
   table.columns = {"q"};
@@ -254,7 +269,7 @@ void Bodies<D>::add_results(Results& results) const {
     add(name + ".velocity", D);
     add(name + ".angular_velocity", turns);
     add_diffusion(name, kind, results);
-    results.scalars.push_back({name + ".exclusion_radius", exclusion_radius(kind), std::nan("")});
+    results.scalars.push_back(without_error(name + ".exclusion_radius", exclusion_radius(kind)));
     table.columns.insert(table.columns.end(),
                          {"g_" + names_[kind], "g_" + names_[kind] + "_error"});
     Curve curve{
@@ -268,13 +283,14 @@ void Bodies<D>::add_results(Results& results) const {
     chart.curves.push_back(std::move(curve));
   }
   add(observer + ".fluid_velocity", D);
+  if (this->average().samples() == 0) return;
   results.tables.emplace_back(observer, std::move(table));
   results.charts.emplace_back(observer, std::move(chart));
 }
 
 template <int D>
 void Bodies<D>::save(StateWriter& out) const {
-  average_.save(out, "average");
+  Observer<D>::save(out);
   density_.save(out, "density");
   places_.save(out, "places_");
   turns_.save(out, "turns_");
@@ -284,7 +300,7 @@ void Bodies<D>::save(StateWriter& out) const {
 
 template <int D>
 void Bodies<D>::load(const StateReader& in) {
-  average_.load(in, "average");
+  Observer<D>::load(in);
   density_.load(in, "density");
   places_.load(in, "places_", kind_.size() * D);
   turns_.load(in, "turns_", kind_.size() * D);

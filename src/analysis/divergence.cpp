@@ -4,29 +4,44 @@
 
 #include <cmath>
 
+#include "odpd/analysis/observer_keys.h"
+
 namespace odpd {
 
 template <int D>
 Divergence<D>::Divergence(ObserverSettings settings, const typename Grid<D>::Counts& cells,
                           const Scene<D>& scene)
-    : Observer<D>(std::move(settings)),
+    : Observer<D>(std::move(settings), Grid<D>(cells, scene).cells() * (D + 1)),
       scene_(scene),
-      grid_(cells, scene),
-      average_(grid_.cells() * (D + 1)) {}
+      grid_(cells, scene) {}
+
+template <int D>
+std::unique_ptr<Observer<D>> Divergence<D>::make(const ObserverEntry<D>& entry) {
+  ObserverSettings settings = entry.settings();
+  if (entry.scene.box().shear)
+    entry.config.fail("kind",
+                      "under [shear] neighbouring cells of two images slide past each other: use "
+                      "walls, or a profile");
+  const auto cells = read_cells(entry);
+  for (const std::int64_t count : cells)
+    if (count < 3)
+      entry.config.fail("bins", "differences need at least 3 cells in every direction");
+  return std::make_unique<Divergence<D>>(std::move(settings), cells, entry.scene);
+}
 
 template <int D>
 void Divergence<D>::measure(const Clock&, const Particles<D>& particles,
                             const StepRecord<D>& record) {
-  newest_.assign(average_.width(), 0.0);
+  std::vector<double> sample(this->average().width(), 0.0);
   for (std::size_t i = 0; i < record.v_mid.size(); ++i) {
     if (!particles.is_free(i)) continue;
     Vec<D> middle = record.start.position[i] + (0.5 * record.dt) * record.v_mid[i];
     scene_.box().wrap(middle);
     const std::size_t cell = grid_.cell_of(middle);
-    newest_[column(cell, 0)] += 1.0;
-    for (std::size_t c = 0; c < D; ++c) newest_[column(cell, c + 1)] += record.v_mid[i].x[c];
+    sample[column(cell, 0)] += 1.0;
+    for (std::size_t c = 0; c < D; ++c) sample[column(cell, c + 1)] += record.v_mid[i].x[c];
   }
-  average_.add(newest_);
+  this->add(std::move(sample));
 }
 
 template <int D>
@@ -59,37 +74,41 @@ auto Divergence<D>::divergence_at(std::size_t cell) const -> Terms {
 }
 
 template <int D>
+bool Divergence<D>::every_cell_was_visited() const {
+  for (std::size_t cell = 0; cell < grid_.cells(); ++cell)
+    if (this->average().mean(column(cell, 0)) == 0.0) return false;
+  return true;
+}
+
+template <int D>
 void Divergence<D>::add_results(Results& results) const {
-  if (average_.samples() == 0) return;
-  const std::string& name = this->settings().name;
+  const BlockAverage& average = this->average();
   const std::size_t cells = grid_.cells();
-  for (std::size_t cell = 0; cell < cells; ++cell)
-    if (average_.mean(column(cell, 0)) == 0.0) {
-      results.notes.push_back(
-          fmt::format("{}: a cell never held a particle, so no divergence: use fewer bins", name));
-      return;
-    }
+  if (!every_cell_was_visited())
+    results.notes.push_back(
+        fmt::format("{}: a cell never held a particle, so no divergence: use fewer bins",
+                    this->settings().name));
   const auto value = [&](const Terms& terms, const auto& mean) {
     double sum = 0.0;
     for (const auto& t : terms) sum += t.weight * mean(t.numerator) / mean(t.denominator);
     return sum;
   };
-  const auto measured = [&](std::size_t k) { return average_.mean(k); };
+  const auto measured = [&](std::size_t k) { return average.mean(k); };
   double rms = 0.0, noise = 0.0, gradient = 0.0;
   for (std::size_t cell = 0; cell < cells; ++cell) {
     const Terms divergence = divergence_at(cell);
     rms += std::pow(value(divergence, measured), 2) / static_cast<double>(cells);
-    noise += std::pow(average_.ratio_error(divergence), 2) / static_cast<double>(cells);
+    noise += std::pow(average.ratio_error(divergence), 2) / static_cast<double>(cells);
     for (int a = 0; a < D; ++a)
       for (int b = 0; b < D; ++b) {
         Terms terms;
         add_derivative(cell, a, b, terms);
         gradient +=
-            (std::pow(value(terms, measured), 2) - std::pow(average_.ratio_error(terms), 2)) /
+            (std::pow(value(terms, measured), 2) - std::pow(average.ratio_error(terms), 2)) /
             static_cast<double>(cells);
       }
   }
-  const double error = average_.jackknife_error([&](const std::vector<double>& means) {
+  const double error = average.jackknife_error([&](const std::vector<double>& means) {
     double sum = 0.0;
     for (std::size_t cell = 0; cell < cells; ++cell)
       sum += std::pow(value(divergence_at(cell), [&](std::size_t k) { return means[k]; }), 2);
@@ -98,10 +117,10 @@ void Divergence<D>::add_results(Results& results) const {
   const double nan = std::nan("");
   // Without a flow there is nothing to compare with.
   const double norm = gradient > 0.0 ? std::sqrt(gradient) : nan;
-  results.scalars.push_back({name + ".rms", std::sqrt(rms), error});
-  results.scalars.push_back({name + ".noise", std::sqrt(noise), nan});
-  results.scalars.push_back({name + ".gradient", norm, nan});
-  results.scalars.push_back({name + ".relative",
+  results.scalars.push_back({this->named("rms"), std::sqrt(rms), error});
+  results.scalars.push_back(without_error(this->named("noise"), std::sqrt(noise)));
+  results.scalars.push_back(without_error(this->named("gradient"), norm));
+  results.scalars.push_back({this->named("relative"),
                              std::isnan(noise) ? nan : std::sqrt(std::max(rms - noise, 0.0)) / norm,
                              error / norm});
 }

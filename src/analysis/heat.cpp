@@ -39,8 +39,19 @@ double body_power(const Scene<D>& scene, const Particles<D>& particles, const St
 }  // namespace
 
 template <int D>
+std::unique_ptr<Observer<D>> Heat<D>::make(const ObserverEntry<D>& entry) {
+  ObserverSettings settings = entry.settings();
+  if (entry.scene.settings().mass > 0.0)
+    entry.config.fail("kind",
+                      "the balance of heat is that of a massless fluid: fluid.mass must be 0");
+  if (entry.scene.settings().zeta_0 > 0.0)
+    entry.config.fail("kind", "the balance of heat leaves out the drag: fluid.zeta_0 must be 0");
+  return std::make_unique<Heat<D>>(std::move(settings), entry.scene);
+}
+
+template <int D>
 void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
-                        const StepRecord<D>& record, double weight) {
+                        const StepRecord<D>& record, double weight, std::vector<double>& sample) {
   const PairNetwork<D>& network = stage.network;
   std::vector<double> friction(network.i.size()), noise(record.edge_noise.size());
   parallel_for(network.size(), [&](std::int64_t edge) {
@@ -78,38 +89,37 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
     worst_ = std::max(worst_, std::abs(walls + driven + shear - produced - rate) / dissipated);
   const std::array<double, 5> powers{produced, walls, driven, shear, rate};
   for (std::size_t k = 0; k < powers.size(); ++k)
-    newest_[k] += weight * powers[k] / scene_.fluid_volume();
+    sample[k] += weight * powers[k] / scene_.fluid_volume();
 }
 
 template <int D>
 void Heat<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
-  newest_.assign(average_.width(), 0.0);
-  if (record.start_weight > 0.0) add_stage(particles, record.start, record, record.start_weight);
+  std::vector<double> sample(this->average().width(), 0.0);
+  if (record.start_weight > 0.0)
+    add_stage(particles, record.start, record, record.start_weight, sample);
   if (record.has_corrector())
-    add_stage(particles, record.corrector, record, 1.0 - record.start_weight);
-  average_.add(newest_);
+    add_stage(particles, record.corrector, record, 1.0 - record.start_weight, sample);
+  this->add(std::move(sample));
 }
 
 template <int D>
 void Heat<D>::add_results(Results& results) const {
-  if (average_.samples() == 0) return;
-  const std::vector<std::string> names = series_columns();
-  for (std::size_t k = 0; k < names.size(); ++k)
-    results.scalars.push_back(
-        {this->settings().name + "." + names[k], average_.mean(k), average_.standard_error(k)});
-  results.scalars.push_back({this->settings().name + ".residual", worst_, 0.0});
+  Observer<D>::add_results(results);
+  const bool any = this->average().samples() > 0;
+  results.scalars.push_back(without_error(this->named("residual"), any ? worst_ : std::nan(""),
+                                          any ? 0.0 : std::nan("")));
 }
 
 template <int D>
 void Heat<D>::save(StateWriter& out) const {
   out.write("worst", std::vector<double>{worst_});
-  average_.save(out, "average");
+  Observer<D>::save(out);
 }
 
 template <int D>
 void Heat<D>::load(const StateReader& in) {
   worst_ = in.read_doubles("worst").at(0);
-  average_.load(in, "average");
+  Observer<D>::load(in);
 }
 
 template class Heat<2>;

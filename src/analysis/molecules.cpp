@@ -34,12 +34,11 @@ std::vector<std::array<std::size_t, 2>> bond_tree(const MoleculeSettings<D>& m) 
 template <int D>
 MoleculeStatistics<D>::MoleculeStatistics(ObserverSettings settings, MsdSettings msd,
                                           const Scene<D>& scene, double dt, bool in_time)
-    : Observer<D>(std::move(settings)),
+    : Observer<D>(std::move(settings), shape_columns * scene.settings().molecules.size()),
       msd_(std::move(msd)),
       scene_(scene),
       in_time_(in_time),
       population_(scene.settings().molecules.size(), 0.0),
-      shape_(shape_columns * population_.size()),
       displacements_(this->settings().name, msd_.window, msd_.fit_from,
                      dt * static_cast<double>(this->settings().every), population_.size()) {
   for (const Molecule& m : scene.molecules()) population_[m.kind] += 1.0;
@@ -47,10 +46,18 @@ MoleculeStatistics<D>::MoleculeStatistics(ObserverSettings settings, MsdSettings
 }
 
 template <int D>
+std::unique_ptr<Observer<D>> MoleculeStatistics<D>::make(const ObserverEntry<D>& entry) {
+  ObserverSettings settings = entry.settings(msd_interval(entry.clock));
+  if (entry.scene.settings().molecules.empty())
+    entry.config.fail("kind", "the scene has no [[molecule]]");
+  return std::make_unique<MoleculeStatistics<D>>(std::move(settings), read_msd(entry), entry.scene,
+                                                 entry.clock.dt, entry.in_time);
+}
+
+template <int D>
 void MoleculeStatistics<D>::measure(const Clock&, const Particles<D>& particles,
                                     const StepRecord<D>& record) {
-  newest_ = shapes(particles, record.start);
-  shape_.add(newest_);
+  this->add(shapes(particles, record.start));
   if (in_time_) follow(particles);
 }
 
@@ -124,52 +131,49 @@ std::vector<std::string> MoleculeStatistics<D>::series_columns() const {
 template <int D>
 std::vector<double> MoleculeStatistics<D>::series_row() const {
   std::vector<double> row;
-  for (std::size_t k = 0; k < newest_.size(); ++k)
+  const std::vector<double>& newest = this->newest();
+  for (std::size_t k = 0; k < newest.size(); ++k)
     if (k % shape_columns < 3 || scene_.settings().molecules[k / shape_columns].site_H > 0.0)
-      row.push_back(newest_[k]);
+      row.push_back(newest[k]);
   return row;
 }
 
 template <int D>
 void MoleculeStatistics<D>::add_results(Results& results) const {
-  if (shape_.samples() == 0) return;
+  const BlockAverage& shape = this->average();
+  std::vector<double> means;
+  for (std::size_t k = 0; k < shape.width(); ++k) means.push_back(shape.mean(k));
   for (std::size_t kind = 0; kind < population_.size(); ++kind) {
     const auto& m = scene_.settings().molecules[kind];
     const std::string prefix = this->settings().name + "." + m.name + ".";
     const std::size_t at = shape_columns * kind;
-    const auto variance = [at](const std::vector<double>& means) {
-      return means[at + 1] - means[at] * means[at];
+    const auto variance = [at](const std::vector<double>& mean) {
+      return mean[at + 1] - mean[at] * mean[at];
     };
     if (!m.bonds.empty()) {
+      results.scalars.push_back(this->mean_of(at, prefix + "bond_length"));
       results.scalars.push_back(
-          {prefix + "bond_length", shape_.mean(at), shape_.standard_error(at)});
-      std::vector<double> means;
-      for (std::size_t k = 0; k < shape_.width(); ++k) means.push_back(shape_.mean(k));
-      results.scalars.push_back(
-          {prefix + "bond_variance", variance(means), shape_.jackknife_error(variance)});
+          {prefix + "bond_variance", variance(means), shape.jackknife_error(variance)});
     }
-    results.scalars.push_back({prefix + "radius_of_gyration_squared", shape_.mean(at + 2),
-                               shape_.standard_error(at + 2)});
+    results.scalars.push_back(this->mean_of(at + 2, prefix + "radius_of_gyration_squared"));
     if (m.site_H > 0.0)
-      results.scalars.push_back(
-          {prefix + "site_distance_squared", shape_.mean(at + 3), shape_.standard_error(at + 3)});
+      results.scalars.push_back(this->mean_of(at + 3, prefix + "site_distance_squared"));
     if (!in_time_) continue;
-    const bool any = displacements_.windows() > 0;
     const BlockAverage& diffusion = displacements_.diffusion();
-    results.scalars.push_back({prefix + "diffusion", any ? diffusion.mean(kind) : std::nan(""),
-                               any ? diffusion.standard_error(kind) : std::nan("")});
+    results.scalars.push_back(
+        {prefix + "diffusion", diffusion.mean(kind), diffusion.standard_error(kind)});
   }
 }
 
 template <int D>
 void MoleculeStatistics<D>::save(StateWriter& out) const {
-  shape_.save(out, "shape");
+  Observer<D>::save(out);
   displacements_.save(out, "centres_");
 }
 
 template <int D>
 void MoleculeStatistics<D>::load(const StateReader& in) {
-  shape_.load(in, "shape");
+  Observer<D>::load(in);
   displacements_.load(in, "centres_", scene_.molecules().size() * D);
 }
 

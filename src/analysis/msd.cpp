@@ -2,9 +2,56 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace odpd {
+
+template <int D>
+MsdSettings read_msd(const ObserverEntry<D>& entry) {
+  const Config& config = entry.config;
+  const Scene<D>& scene = entry.scene;
+  MsdSettings m;
+  m.window = config.positive("window", 3.0);
+  m.fit_from = config.non_negative("fit_from", m.window / 3.0);
+  if (m.fit_from >= m.window) config.fail("fit_from", "must be less than window");
+  // Along a bounded direction displacements saturate; along a moving wall or a force they are advection.
+  std::vector<std::string> names, fallback;
+  for (int c = 0; c < D; ++c) {
+    names.emplace_back(1, "xyz"[c]);
+    bool flows = scene.settings().forces_along(c) || !scene.box().is_periodic(c);
+    for (const auto& wall : scene.settings().walls) flows = flows || wall.velocity[c] != 0.0;
+    const auto& shear = scene.box().shear;
+    flows = flows || (shear && shear->flow == c);
+    for (const auto& body : scene.settings().bodies)
+      flows = flows || body.velocity.velocity[c] != 0.0 || body.load.force[c] != 0.0;
+    if (!flows) fallback.push_back(names.back());
+  }
+  if (fallback.empty())
+    for (int c = 0; c < D; ++c)
+      if (!scene.box().is_periodic(c)) fallback.push_back(names[static_cast<std::size_t>(c)]);
+  if (fallback.empty())
+    for (int c = 0; c < D; ++c)
+      if (!scene.box().shear || scene.box().shear->flow != c)
+        fallback.push_back(names[static_cast<std::size_t>(c)]);
+  for (const std::string& name : config.texts("directions", fallback)) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end())
+      config.fail("directions", fmt::format("there is no direction '{}'", name));
+    m.directions.push_back(static_cast<int>(at - names.begin()));
+    if (scene.box().shear && scene.box().shear->flow == m.directions.back())
+      config.fail("directions",
+                  fmt::format("{} is the flow direction of [shear]: displacements along it are "
+                              "advection, and jump where a particle crosses a sliding face",
+                              name));
+  }
+  if (m.directions.empty()) config.fail("directions", "at least one direction is needed");
+  return m;
+}
+
+std::int64_t msd_interval(const Clock& clock) {
+  return std::max<std::int64_t>(1, std::llround(0.05 / clock.dt));
+}
 
 template <int D>
 Msd<D>::Msd(ObserverSettings settings, MsdSettings msd, const Scene<D>& scene, double dt)
@@ -14,6 +61,12 @@ Msd<D>::Msd(ObserverSettings settings, MsdSettings msd, const Scene<D>& scene, d
       species_(scene.settings().species.size()),
       displacements_(this->settings().name, msd_.window, msd_.fit_from,
                      dt * static_cast<double>(this->settings().every), species_) {}
+
+template <int D>
+std::unique_ptr<Observer<D>> Msd<D>::make(const ObserverEntry<D>& entry) {
+  return std::make_unique<Msd<D>>(entry.settings(msd_interval(entry.clock)), read_msd(entry),
+                                  entry.scene, entry.clock.dt);
+}
 
 template <int D>
 void Msd<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>&) {
@@ -40,20 +93,23 @@ std::vector<std::string> Msd<D>::series_columns() const {
 
 template <int D>
 void Msd<D>::add_results(Results& results) const {
-  const std::string prefix = this->settings().name == "msd" ? "" : this->settings().name + ".";
+  // The default observer's names carry no prefix: every run has them.
+  const std::string prefix = this->settings().name == "msd" ? "" : this->named("");
+  const BlockAverage& diffusion = displacements_.diffusion();
+  const BlockAverage& msd = displacements_.curve();
+  const auto& species = scene_.settings().species;
+  results.scalars.push_back(
+      {prefix + "diffusion", diffusion.mean(species_), diffusion.standard_error(species_)});
+  for (std::size_t a = 0; a < species_ && species_ > 1; ++a)
+    results.scalars.push_back(
+        {prefix + "diffusion." + species[a].name, diffusion.mean(a), diffusion.standard_error(a)});
   if (displacements_.windows() == 0) {
-    results.scalars.push_back({prefix + "diffusion", std::nan(""), std::nan("")});
     results.notes.push_back(
         fmt::format("{}: the measured part is shorter than the window of {}, so no diffusion "
                     "coefficient",
                     this->settings().name, msd_.window));
     return;
   }
-  const BlockAverage& diffusion = displacements_.diffusion();
-  const BlockAverage& msd = displacements_.curve();
-  results.scalars.push_back(
-      {prefix + "diffusion", diffusion.mean(species_), diffusion.standard_error(species_)});
-  const auto& species = scene_.settings().species;
   Table table;
   table.columns = {"lag"};
   Chart chart{.title = "Mean-square displacement",
@@ -63,9 +119,6 @@ void Msd<D>::add_results(Results& results) const {
   for (std::int64_t lag = 0; lag < displacements_.lags(); ++lag)
     table.rows.push_back({displacements_.lag(lag)});
   for (std::size_t a = 0; a < species_; ++a) {
-    if (species_ > 1)
-      results.scalars.push_back({prefix + "diffusion." + species[a].name, diffusion.mean(a),
-                                 diffusion.standard_error(a)});
     table.columns.insert(table.columns.end(),
                          {"msd_" + species[a].name, "msd_" + species[a].name + "_error"});
     Curve curve{.title = species[a].name, .x = {}, .y = {}, .error = {}};
@@ -92,6 +145,8 @@ void Msd<D>::load(const StateReader& in) {
   displacements_.load(in, "", scene_.particles().position.size() * D);
 }
 
+template MsdSettings read_msd<2>(const ObserverEntry<2>&);
+template MsdSettings read_msd<3>(const ObserverEntry<3>&);
 template class Msd<2>;
 template class Msd<3>;
 

@@ -7,18 +7,62 @@
 #include <numbers>
 
 #include "odpd/analysis/least_squares.h"
+#include "odpd/analysis/observer_keys.h"
 #include "odpd/analysis/thermo.h"
 
 namespace odpd {
 
 template <int D>
 Profile<D>::Profile(ObserverSettings settings, ProfileSettings profile, const Scene<D>& scene)
-    : Observer<D>(std::move(settings)),
+    : Observer<D>(std::move(settings), width * static_cast<std::size_t>(profile.bins)),
       profile_(profile),
       scene_(scene),
       low_(scene.fluid_low()[profile.axis]),
-      high_(scene.fluid_high()[profile.axis]),
-      average_(width * static_cast<std::size_t>(profile.bins)) {}
+      high_(scene.fluid_high()[profile.axis]) {}
+
+template <int D>
+std::int64_t fitted_bins(const ProfileSettings& p, const Scene<D>& scene) {
+  const double low = scene.fluid_low()[p.axis];
+  const double bin_width = (scene.fluid_high()[p.axis] - low) / static_cast<double>(p.bins);
+  std::int64_t count = 0;
+  for (std::int64_t b = 0; b < p.bins; ++b) {
+    const double centre = low + bin_width * (static_cast<double>(b) + 0.5);
+    if (centre >= p.fit_from && centre <= p.fit_to) ++count;
+  }
+  return count;
+}
+
+template <int D>
+std::unique_ptr<Observer<D>> Profile<D>::make(const ObserverEntry<D>& entry) {
+  ObserverSettings settings = entry.settings();
+  const Config& config = entry.config;
+  const Scene<D>& scene = entry.scene;
+  ProfileSettings p;
+  p.axis = read_axis(entry);
+  p.bins = config.positive_integer("bins", 20);
+  const std::string fit = config.choice("fit", {"none", "linear", "parabola", "sine"}, "none");
+  p.fit = fit == "linear"     ? ProfileFit::linear
+          : fit == "parabola" ? ProfileFit::parabola
+          : fit == "sine"     ? ProfileFit::sine
+                              : ProfileFit::none;
+  const ForceWave& wave = scene.settings().force_wave;
+  if (p.fit == ProfileFit::sine && (wave.number == 0 || wave.along != p.axis))
+    config.fail("fit", "a sine needs body_force.wave along the profile's axis");
+  p.component =
+      read_direction<D>(config, "component", scene.box().shear ? scene.box().shear->flow : 0);
+  // By default the fit keeps one cutoff clear of the surfaces, where walls order the fluid.
+  const double margin = scene.box().is_periodic(p.axis) ? 0.0 : scene.model().cutoff();
+  p.fit_from = config.number("fit_from", scene.fluid_low()[p.axis] + margin);
+  p.fit_to = config.number("fit_to", scene.fluid_high()[p.axis] - margin);
+  if (!(p.fit_from < p.fit_to)) config.fail("fit_from", "must be less than fit_to");
+  const std::int64_t needed = p.fit == ProfileFit::none ? 0 : p.fit == ProfileFit::parabola ? 4 : 3;
+  if (fitted_bins(p, scene) < needed)
+    config.fail("fit",
+                fmt::format("needs at least {} bins with centres between fit_from = {} and fit_to "
+                            "= {}: use more bins or a wider range",
+                            needed, p.fit_from, p.fit_to));
+  return std::make_unique<Profile<D>>(std::move(settings), p, scene);
+}
 
 template <int D>
 std::int64_t Profile<D>::bin_of(const Vec<D>& r) const {
@@ -38,7 +82,7 @@ void Profile<D>::measure(const Clock&, const Particles<D>& particles, const Step
   std::vector<double> force_squared, laplacian;
   double wall_energy = 0.0;
   configurational_terms(scene_, particles, record.start, force_squared, laplacian, wall_energy);
-  newest_.assign(average_.width(), 0.0);
+  std::vector<double> sample(this->average().width(), 0.0);
   const Box<D> box = scene_.box().at(record.start.time + 0.5 * record.dt);
   for (std::size_t i = 0; i < record.v_mid.size(); ++i) {
     if (!particles.is_free(i)) continue;
@@ -50,21 +94,22 @@ void Profile<D>::measure(const Clock&, const Particles<D>& particles, const Step
       velocity[box.shear->flow] -=
           image[static_cast<std::size_t>(box.shear->gradient)] * box.sliding;
     if (const std::int64_t bin = bin_of(middle); bin >= 0) {
-      newest_[column(static_cast<std::size_t>(bin), 0)] += 1.0;
+      sample[column(static_cast<std::size_t>(bin), 0)] += 1.0;
       for (int c = 0; c < D; ++c)
-        newest_[column(static_cast<std::size_t>(bin), static_cast<std::size_t>(c) + 1)] +=
+        sample[column(static_cast<std::size_t>(bin), static_cast<std::size_t>(c) + 1)] +=
             velocity[c];
     }
     if (const std::int64_t bin = bin_of(record.start.position[i]); bin >= 0) {
-      newest_[column(static_cast<std::size_t>(bin), D + 1)] += force_squared[i];
-      newest_[column(static_cast<std::size_t>(bin), D + 2)] += laplacian[i];
+      sample[column(static_cast<std::size_t>(bin), D + 1)] += force_squared[i];
+      sample[column(static_cast<std::size_t>(bin), D + 2)] += laplacian[i];
     }
   }
-  average_.add(newest_);
+  this->add(std::move(sample));
 }
 
 template <int D>
 Table Profile<D>::table() const {
+  const BlockAverage& average = this->average();
   Table t;
   t.comment = {"bins between the wall surfaces; standard errors by block averaging"};
   t.columns = {std::string(1, "xyz"[profile_.axis]), "density", "density_error"};
@@ -75,16 +120,15 @@ Table Profile<D>::table() const {
   t.columns.insert(t.columns.end(), {"config_temperature", "config_temperature_error"});
   const double bin_volume = scene_.fluid_volume() / static_cast<double>(profile_.bins);
   for (std::size_t b = 0; b < static_cast<std::size_t>(profile_.bins); ++b) {
-    std::vector<double> row{centre(b), average_.mean(column(b, 0)) / bin_volume,
-                            average_.standard_error(column(b, 0)) / bin_volume};
+    std::vector<double> row{centre(b), average.mean(column(b, 0)) / bin_volume,
+                            average.standard_error(column(b, 0)) / bin_volume};
     for (std::size_t c = 1; c <= D; ++c) {
       const std::vector<BlockAverage::RatioTerm> term{{1.0, column(b, c), column(b, 0)}};
-      row.insert(row.end(),
-                 {average_.ratio(column(b, c), column(b, 0)), average_.ratio_error(term)});
+      row.insert(row.end(), {average.ratio(column(b, c), column(b, 0)), average.ratio_error(term)});
     }
     const std::vector<BlockAverage::RatioTerm> term{{1.0, column(b, D + 1), column(b, D + 2)}};
     row.insert(row.end(),
-               {average_.ratio(column(b, D + 1), column(b, D + 2)), average_.ratio_error(term)});
+               {average.ratio(column(b, D + 1), column(b, D + 2)), average.ratio_error(term)});
     t.rows.push_back(std::move(row));
   }
   return t;
@@ -92,7 +136,6 @@ Table Profile<D>::table() const {
 
 template <int D>
 void Profile<D>::add_results(Results& results) const {
-  if (average_.samples() == 0) return;
   const std::string& name = this->settings().name;
   const Table t = table();
   Chart velocity;
@@ -118,6 +161,7 @@ void Profile<D>::add_results(Results& results) const {
     n.error.push_back(row[2]);
   }
   density.curves.push_back(std::move(n));
+  if (this->average().samples() == 0) return;
   results.tables.emplace_back(name, t);
   results.charts.emplace_back(name + "_velocity", std::move(velocity));
   results.charts.emplace_back(name + "_density", std::move(density));
@@ -155,22 +199,31 @@ double Profile<D>::fitted_force() const {
 }
 
 template <int D>
-std::optional<typename Profile<D>::FittedBins> Profile<D>::fit_bins() const {
+typename Profile<D>::FittedBins Profile<D>::fit_bins() const {
+  const BlockAverage& average = this->average();
   const auto component = static_cast<std::size_t>(profile_.component) + 1;
-  FittedBins fitted;
+  const int degree = profile_.fit == ProfileFit::parabola ? 2 : 1;
+  const double nan = std::nan("");
+  FittedBins fitted{.found = true, .fit = {}, .bins = {}};
   std::vector<double> x, y, error;
   for (std::size_t b = 0; b < static_cast<std::size_t>(profile_.bins); ++b) {
     if (centre(b) < profile_.fit_from || centre(b) > profile_.fit_to) continue;
     const std::vector<BlockAverage::RatioTerm> term{{1.0, column(b, component), column(b, 0)}};
-    const double e = average_.ratio_error(term);
-    if (!(e > 0.0)) return std::nullopt;
+    const double e = average.ratio_error(term);
+    if (!(e > 0.0)) {
+      fitted.found = false;
+      fitted.density = nan;
+      fitted.fit.coefficient.assign(static_cast<std::size_t>(degree) + 1, nan);
+      fitted.fit.reduced_chi_square = nan;
+      return fitted;
+    }
     x.push_back(abscissa(centre(b), (high_ - low_) / static_cast<double>(profile_.bins)));
-    y.push_back(average_.ratio(column(b, component), column(b, 0)));
+    y.push_back(average.ratio(column(b, component), column(b, 0)));
     error.push_back(e);
     fitted.bins.push_back(term[0]);
-    fitted.density += average_.mean(column(b, 0));
+    fitted.density += average.mean(column(b, 0));
   }
-  fitted.fit = fit_polynomial(profile_.fit == ProfileFit::parabola ? 2 : 1, x, y, error);
+  fitted.fit = fit_polynomial(degree, x, y, error);
   fitted.density *=
       static_cast<double>(profile_.bins) / scene_.fluid_volume() / static_cast<double>(x.size());
   return fitted;
@@ -178,23 +231,21 @@ std::optional<typename Profile<D>::FittedBins> Profile<D>::fit_bins() const {
 
 template <int D>
 double Profile<D>::coefficient_error(const FittedBins& fitted, std::size_t power) const {
+  if (!fitted.found) return std::nan("");
   std::vector<BlockAverage::RatioTerm> terms = fitted.bins;
   for (std::size_t k = 0; k < terms.size(); ++k) terms[k].weight = fitted.fit.weight[power][k];
-  return average_.ratio_error(terms);
+  return this->average().ratio_error(terms);
 }
 
 template <int D>
 void Profile<D>::add_fit(Results& results, Chart& chart) const {
-  const std::string& name = this->settings().name;
-  const std::optional<FittedBins> fitted = fit_bins();
-  if (!fitted) {
-    results.notes.push_back(
-        fmt::format("{}: too few samples for errors, so no fit: run longer", name));
-    return;
-  }
-  const double nan = std::nan("");
-  results.scalars.push_back({name + ".reduced_chi_square", fitted->fit.reduced_chi_square, nan});
-  results.scalars.push_back({name + ".bulk_density", fitted->density, nan});
+  const FittedBins fitted = fit_bins();
+  if (!fitted.found)
+    results.notes.push_back(fmt::format("{}: too few samples for errors, so no fit: run longer",
+                                        this->settings().name));
+  results.scalars.push_back(
+      without_error(this->named("reduced_chi_square"), fitted.fit.reduced_chi_square));
+  results.scalars.push_back(without_error(this->named("bulk_density"), fitted.density));
   const bool linear = profile_.fit == ProfileFit::linear, sine = profile_.fit == ProfileFit::sine;
   Curve line{.title = linear ? "linear fit"
                       : sine ? "sine fit"
@@ -204,11 +255,11 @@ void Profile<D>::add_fit(Results& results, Chart& chart) const {
              .error = {},
              .line = true,
              .points = false};
-  for (int k = 0; k <= 50; ++k) {
+  for (int k = 0; k <= 50 && fitted.found; ++k) {
     line.x.push_back(low_ + (high_ - low_) * k / 50.0);
-    line.y.push_back(fitted->fit(abscissa(line.x.back(), 0.0)));
+    line.y.push_back(fitted.fit(abscissa(line.x.back(), 0.0)));
   }
-  chart.curves.push_back(std::move(line));
+  if (fitted.found) chart.curves.push_back(std::move(line));
   const int below = scene_.settings().wall_at(profile_.axis, false);
   const int above = scene_.settings().wall_at(profile_.axis, true);
   std::optional<WallSpeeds> walls;
@@ -216,32 +267,33 @@ void Profile<D>::add_fit(Results& results, Chart& chart) const {
     walls = WallSpeeds{scene_.known_velocity(below + 1, 0.0)[profile_.component],
                        scene_.known_velocity(above + 1, 0.0)[profile_.component]};
   if (linear) {
-    add_linear(*fitted, walls, results, chart);
+    add_linear(fitted, walls, results, chart);
   } else if (sine) {
-    add_sine(*fitted, results);
+    add_sine(fitted, results);
   } else {
-    add_parabola(*fitted, walls, results);
+    add_parabola(fitted, walls, results);
   }
 }
 
 template <int D>
 void Profile<D>::add_linear(const FittedBins& fitted, const std::optional<WallSpeeds>& walls,
                             Results& results, Chart& chart) const {
-  const std::string& name = this->settings().name;
   const double slope = fitted.fit.coefficient[1];
   const double error = coefficient_error(fitted, 1);
-  results.scalars.push_back({name + ".slope", slope, error});
+  results.scalars.push_back({this->named("slope"), slope, error});
   if (!walls || walls->high == walls->low) return;
   const double h = high_ - low_;
   const double expected = (walls->high - walls->low) / h;
-  results.scalars.push_back({name + ".slope_ratio", slope / expected, error / std::abs(expected)});
-  results.scalars.push_back({name + ".slip_length", 0.5 * h * (expected / slope - 1.0),
+  results.scalars.push_back(
+      {this->named("slope_ratio"), slope / expected, error / std::abs(expected)});
+  results.scalars.push_back({this->named("slip_length"), 0.5 * h * (expected / slope - 1.0),
                              0.5 * h * std::abs(expected / (slope * slope)) * error});
+  if (!fitted.found) return;
   results.notes.push_back(
       fmt::format("{}: H_eff = {} is the distance between the wall surfaces (the layers at depth "
                   "0); slope_ratio "
                   "compares with (U_high - U_low)/H_eff",
-                  name, h));
+                  this->settings().name, h));
   chart.curves.push_back({.title = "no slip at the surfaces",
                           .x = {low_, high_},
                           .y = {walls->low, walls->high},
@@ -253,33 +305,32 @@ void Profile<D>::add_linear(const FittedBins& fitted, const std::optional<WallSp
 template <int D>
 void Profile<D>::add_parabola(const FittedBins& fitted, const std::optional<WallSpeeds>& walls,
                               Results& results) const {
-  const std::string& name = this->settings().name;
   const std::vector<double>& c = fitted.fit.coefficient;
   const double error = coefficient_error(fitted, 2);
-  results.scalars.push_back({name + ".curvature", c[2], error});
+  results.scalars.push_back({this->named("curvature"), c[2], error});
   const double f = fitted_force();
   if (f == 0.0) return;
   const double viscosity = fitted.density * f / (-2.0 * c[2]);
-  results.scalars.push_back({name + ".viscosity", viscosity, std::abs(viscosity / c[2]) * error});
+  results.scalars.push_back(
+      {this->named("viscosity"), viscosity, std::abs(viscosity / c[2]) * error});
   if (!walls) return;
   const double top = c[0] - c[1] * c[1] / (4.0 * c[2]);
-  results.scalars.push_back({name + ".maximum", top, coefficient_error(fitted, 0)});
+  results.scalars.push_back({this->named("maximum"), top, coefficient_error(fitted, 0)});
   const double half_width = std::sqrt((0.5 * (walls->low + walls->high) - top) / c[2]);
   results.scalars.push_back(
-      {name + ".slip_length", half_width - 0.5 * (high_ - low_), std::nan("")});
+      without_error(this->named("slip_length"), half_width - 0.5 * (high_ - low_)));
 }
 
 template <int D>
 void Profile<D>::add_sine(const FittedBins& fitted, Results& results) const {
-  const std::string& name = this->settings().name;
   const double amplitude = fitted.fit.coefficient[1], error = coefficient_error(fitted, 1);
   const double length = (high_ - low_) / (2.0 * std::numbers::pi *
                                           static_cast<double>(scene_.settings().force_wave.number));
   const double viscosity = fitted.density * scene_.settings().body_force[profile_.component] *
                            length * length / amplitude;
-  results.scalars.push_back({name + ".amplitude", amplitude, error});
+  results.scalars.push_back({this->named("amplitude"), amplitude, error});
   results.scalars.push_back(
-      {name + ".viscosity", viscosity, std::abs(viscosity / amplitude) * error});
+      {this->named("viscosity"), viscosity, std::abs(viscosity / amplitude) * error});
 }
 
 template <int D>
@@ -293,14 +344,17 @@ std::vector<std::string> Profile<D>::series_columns() const {
 template <int D>
 std::vector<double> Profile<D>::series_row() const {
   std::vector<double> row;
-  if (newest_.empty()) return row;
+  const std::vector<double>& newest = this->newest();
+  if (newest.empty()) return row;
   for (std::size_t b = 0; b < static_cast<std::size_t>(profile_.bins); ++b) {
-    row.push_back(newest_[column(b, 0)]);
-    row.push_back(newest_[column(b, static_cast<std::size_t>(profile_.component) + 1)]);
+    row.push_back(newest[column(b, 0)]);
+    row.push_back(newest[column(b, static_cast<std::size_t>(profile_.component) + 1)]);
   }
   return row;
 }
 
+template std::int64_t fitted_bins<2>(const ProfileSettings&, const Scene<2>&);
+template std::int64_t fitted_bins<3>(const ProfileSettings&, const Scene<3>&);
 template class Profile<2>;
 template class Profile<3>;
 

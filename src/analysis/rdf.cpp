@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "odpd/analysis/observer_keys.h"
 #include "odpd/geometry/pair_list.h"
 
 namespace odpd {
@@ -14,18 +15,43 @@ template <int D>
 double ball(double r) {
   return unit_ball_volume<D> * std::pow(r, D);
 }
+
+// Pairs of species.
+template <int D>
+std::size_t pairs_of(const Scene<D>& scene) {
+  const std::size_t n = scene.settings().species.size();
+  return n * (n + 1) / 2;
+}
 }  // namespace
 
 template <int D>
 Rdf<D>::Rdf(ObserverSettings settings, double r_max, std::int64_t bins, const Scene<D>& scene,
             std::optional<RdfComparison> comparison)
-    : Observer<D>(std::move(settings)),
+    : Observer<D>(std::move(settings), pairs_of(scene) * static_cast<std::size_t>(bins)),
       r_max_(r_max),
       bins_(static_cast<std::size_t>(bins)),
       scene_(scene),
       species_(scene.settings().species.size()),
-      comparison_(comparison),
-      average_(species_ * (species_ + 1) / 2 * bins_) {}
+      comparison_(comparison) {}
+
+template <int D>
+std::unique_ptr<Observer<D>> Rdf<D>::make(const ObserverEntry<D>& entry) {
+  ObserverSettings settings = entry.settings(20);
+  const Config& config = entry.config;
+  const double r_max = read_r_max(entry);
+  const std::int64_t bins = config.positive_integer("bins", 100);
+  std::optional<RdfComparison> comparison;
+  if (config.has("reference")) {
+    comparison = {config.number("reference"), config.non_negative("compare_from", 0.0),
+                  config.positive("compare_to", r_max)};
+    if (comparison->to - comparison->from < r_max / static_cast<double>(bins) ||
+        comparison->to > r_max)
+      config.fail(
+          "compare_to",
+          fmt::format("must be at least a bin above compare_from and at most r_max = {}", r_max));
+  }
+  return std::make_unique<Rdf<D>>(std::move(settings), r_max, bins, entry.scene, comparison);
+}
 
 template <int D>
 std::vector<double> Rdf<D>::factors(const Particles<D>& particles) const {
@@ -59,7 +85,7 @@ void Rdf<D>::measure(const Clock&, const Particles<D>& particles, const StepReco
   PairList<D> list(box, r_max_, 0.0);
   const auto& r = record.start.position;
   list.update(r);
-  newest_.assign(average_.width(), 0.0);
+  std::vector<double> sample(this->average().width(), 0.0);
   for (std::int64_t row = 0; row < list.rows(); ++row) {
     const auto i = static_cast<std::size_t>(row);
     if (!particles.is_free(i)) continue;
@@ -69,13 +95,13 @@ void Rdf<D>::measure(const Clock&, const Particles<D>& particles, const StepReco
       const double distance = norm(box.separation(r[i], r[j]));
       const auto bin = static_cast<std::size_t>(distance / r_max_ * static_cast<double>(bins_));
       if (bin < bins_)
-        newest_[pair_index(particles.species[i], particles.species[j]) * bins_ + bin] += 1.0;
+        sample[pair_index(particles.species[i], particles.species[j]) * bins_ + bin] += 1.0;
     }
   }
   // Of the particles given: a restart may bring others than the scene began with.
   const std::vector<double> factor = factors(particles);
-  for (std::size_t k = 0; k < newest_.size(); ++k) newest_[k] *= factor[k];
-  average_.add(newest_);
+  for (std::size_t k = 0; k < sample.size(); ++k) sample[k] *= factor[k];
+  this->add(std::move(sample));
 }
 
 template <int D>
@@ -91,7 +117,9 @@ std::vector<std::string> Rdf<D>::series_columns() const {
 
 template <int D>
 void Rdf<D>::add_results(Results& results) const {
-  if (average_.samples() == 0) return;
+  if (comparison_) add_deviations(results);
+  const BlockAverage& average = this->average();
+  if (average.samples() == 0) return;
   const auto& species = scene_.settings().species;
   Table table;
   table.comment = {"r: middle of the bin; standard errors by block averaging"};
@@ -113,8 +141,8 @@ void Rdf<D>::add_results(Results& results) const {
                   .line = true,
                   .points = false};
       for (std::size_t k = 0; k < bins_; ++k, ++column) {
-        const double g = average_.mean(column);
-        table.rows[k].insert(table.rows[k].end(), {g, average_.standard_error(column)});
+        const double g = average.mean(column);
+        table.rows[k].insert(table.rows[k].end(), {g, average.standard_error(column)});
         curve.x.push_back(table.rows[k][0]);
         curve.y.push_back(g);
       }
@@ -122,25 +150,24 @@ void Rdf<D>::add_results(Results& results) const {
     }
   results.tables.emplace_back(this->settings().name, std::move(table));
   results.charts.emplace_back(this->settings().name, std::move(chart));
-  if (comparison_) add_deviations(results);
 }
 
 template <int D>
 void Rdf<D>::add_deviations(Results& results) const {
+  const BlockAverage& average = this->average();
   double sum = 0.0, count = 0.0;
-  Scalar largest{this->settings().name + ".largest_deviation", 0.0, std::nan("")};
-  for (std::size_t column = 0; column < average_.width(); ++column) {
+  Scalar largest{this->named("largest_deviation"), 0.0};
+  for (std::size_t column = 0; column < average.width(); ++column) {
     const double r = middle(column % bins_);
     if (r < comparison_->from || r > comparison_->to) continue;
-    const double deviation = std::abs(average_.mean(column) - comparison_->value);
+    const double deviation = std::abs(average.mean(column) - comparison_->value);
     sum += deviation * deviation;
     count += 1.0;
     if (deviation < largest.mean) continue;
     largest.mean = deviation;
-    largest.standard_error = average_.standard_error(column);
+    largest.standard_error = average.standard_error(column);
   }
-  results.scalars.push_back(
-      {this->settings().name + ".rms_deviation", std::sqrt(sum / count), std::nan("")});
+  results.scalars.push_back(without_error(this->named("rms_deviation"), std::sqrt(sum / count)));
   results.scalars.push_back(std::move(largest));
 }
 

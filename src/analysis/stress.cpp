@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/analysis/observer_keys.h"
 #include "odpd/analysis/places.h"
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
@@ -188,28 +189,38 @@ std::vector<double> stress_of(const Scene<D>& scene, const Particles<D>& particl
 
 template <int D>
 Stress<D>::Stress(ObserverSettings settings, StressBins bins, const Scene<D>& scene)
-    : Observer<D>(std::move(settings)),
+    : Observer<D>(std::move(settings),
+                  bin_column + static_cast<std::size_t>(bins.bins) * components),
       bins_(bins),
-      scene_(scene),
-      average_(bin_column + static_cast<std::size_t>(bins.bins) * components) {}
+      scene_(scene) {}
+
+template <int D>
+std::unique_ptr<Observer<D>> Stress<D>::make(const ObserverEntry<D>& entry) {
+  ObserverSettings settings = entry.settings();
+  StressBins bins;
+  bins.bins = entry.config.integer("bins", 0);
+  if (bins.bins < 0) entry.config.fail("bins", "must be zero (none) or positive");
+  if (bins.bins > 0) bins.axis = read_axis(entry);
+  return std::make_unique<Stress<D>>(std::move(settings), bins, entry.scene);
+}
 
 template <int D>
 void Stress<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
   const std::vector<double> stress = stress_of(scene_, particles, record, bins_);
   one_stage_ = one_stage_ || (scene_.settings().mass == 0.0 && !record.has_corrector() &&
                               !record.edge_noise.empty());
-  newest_.assign(average_.width(), 0.0);
-  std::copy(stress.begin(), stress.begin() + total_column, newest_.begin());
+  std::vector<double> sample(this->average().width(), 0.0);
+  std::copy(stress.begin(), stress.begin() + total_column, sample.begin());
   for (std::size_t part = 0; part < stress_parts; ++part)
     for (std::size_t k = 0; k < components; ++k) {
       const double value = stress[part * components + k];
-      newest_[total_column + k] += value;
+      sample[total_column + k] += value;
       if (k % (D + 1) != 0) continue;
-      newest_[pressure_column] -= value / D;
-      newest_[pressure_column + 1 + part] -= value / D;
+      sample[pressure_column] -= value / D;
+      sample[pressure_column + 1 + part] -= value / D;
     }
-  std::copy(stress.begin() + total_column, stress.end(), newest_.begin() + bin_column);
-  average_.add(newest_);
+  std::copy(stress.begin() + total_column, stress.end(), sample.begin() + bin_column);
+  this->add(std::move(sample));
 }
 
 template <int D>
@@ -225,8 +236,9 @@ std::vector<std::string> Stress<D>::series_columns() const {
 
 template <int D>
 std::vector<double> Stress<D>::series_row() const {
-  if (newest_.empty()) return {};
-  return {newest_.begin() + total_column, newest_.begin() + bin_column};
+  const std::vector<double>& newest = this->newest();
+  if (newest.empty()) return {};
+  return {newest.begin() + total_column, newest.begin() + bin_column};
 }
 
 template <int D>
@@ -243,7 +255,7 @@ void Stress<D>::add_profile(Results& results) const {
                                       static_cast<double>(bins_.bins)};
     for (std::size_t k = 0; k < components; ++k) {
       const std::size_t column = bin_column + static_cast<std::size_t>(b) * components + k;
-      row.insert(row.end(), {average_.mean(column), average_.standard_error(column)});
+      row.insert(row.end(), {this->average().mean(column), this->average().standard_error(column)});
     }
     table.rows.push_back(std::move(row));
   }
@@ -265,33 +277,30 @@ void Stress<D>::add_profile(Results& results) const {
 
 template <int D>
 void Stress<D>::add_results(Results& results) const {
-  if (average_.samples() == 0) return;
-  const std::string& name = this->settings().name;
   const std::vector<std::string> names = series_columns();
   for (std::size_t k = 0; k < names.size(); ++k) {
     std::string label = names[k];
     std::replace(label.begin(), label.end(), '_', '.');
-    results.scalars.push_back({name + "." + label, average_.mean(total_column + k),
-                               average_.standard_error(total_column + k)});
+    results.scalars.push_back(this->mean_of(total_column + k, this->named(label)));
   }
   if (one_stage_)
     results.notes.push_back(fmt::format(
         "{}: this integrator has no second stage, so the friction stress is that before the motion "
         "alone, some per cent off at any dt: trapezoidal and midpoint give it without bias",
-        name));
-  if (bins_.bins > 0) add_profile(results);
+        this->settings().name));
+  if (bins_.bins > 0 && this->average().samples() > 0) add_profile(results);
 }
 
 template <int D>
 void Stress<D>::save(StateWriter& out) const {
   out.write("one_stage", std::vector<std::int64_t>{one_stage_ ? 1 : 0});
-  average_.save(out, "average");
+  Observer<D>::save(out);
 }
 
 template <int D>
 void Stress<D>::load(const StateReader& in) {
   one_stage_ = in.read_integers("one_stage").at(0) != 0;
-  average_.load(in, "average");
+  Observer<D>::load(in);
 }
 
 template std::vector<double> stress_of<2>(const Scene<2>&, const Particles<2>&,

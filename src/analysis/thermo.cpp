@@ -52,8 +52,16 @@ std::vector<Vec<D>> peculiar(const Stage<D>& stage, std::vector<Vec<D>> velocity
 }
 
 template <int D>
-Thermo<D>::Thermo(ObserverSettings settings, const Scene<D>& scene)
-    : Observer<D>(std::move(settings)), scene_(scene), average_(5) {}
+Thermo<D>::Thermo(ObserverSettings settings, const Scene<D>& scene, bool in_time)
+    : Observer<D>(std::move(settings), {"energy_per_particle", "pressure", "force_squared",
+                                        "laplacian", "kinetic_temperature"}),
+      scene_(scene),
+      in_time_(in_time) {}
+
+template <int D>
+std::unique_ptr<Observer<D>> Thermo<D>::make(const ObserverEntry<D>& entry) {
+  return std::make_unique<Thermo<D>>(entry.settings(5), entry.scene, entry.in_time);
+}
 
 template <int D>
 void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
@@ -72,33 +80,24 @@ void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepR
       static_cast<double>(std::count_if(particles.bodies.begin(), particles.bodies.end(),
                                         [](const RigidBody<D>& body) { return !body.known; }));
   const double volume = scene_.fluid_volume();
-  newest_ = {(network.u.sum() + wall_energy) / n,
+  this->add({(network.u.sum() + wall_energy) / n,
              ((n + bodies) * scene_.largest_kT() + fixed_sum(virial) / D) / volume,
              fixed_sum(force_squared), fixed_sum(laplacian),
-             kinetic_temperature(scene_, particles, peculiar(record.start, record.v_start))};
-  average_.add(newest_);
-}
-
-template <int D>
-std::vector<std::string> Thermo<D>::series_columns() const {
-  return {"energy_per_particle", "pressure", "force_squared", "laplacian", "kinetic_temperature"};
+             kinetic_temperature(scene_, particles, peculiar(record.start, record.v_start))});
 }
 
 template <int D>
 void Thermo<D>::add_results(Results& results) const {
-  if (average_.samples() == 0) return;
   // The default observer's names carry no prefix: every run has them.
-  const std::string prefix = this->settings().name == "thermo" ? "" : this->settings().name + ".";
-  results.scalars.push_back(
-      {prefix + "energy_per_particle", average_.mean(0), average_.standard_error(0)});
-  results.scalars.push_back({prefix + "pressure", average_.mean(1), average_.standard_error(1)});
+  const std::string prefix = this->settings().name == "thermo" ? "" : this->named("");
+  results.scalars.push_back(this->mean_of(0, prefix + "energy_per_particle"));
+  results.scalars.push_back(this->mean_of(1, prefix + "pressure"));
   const std::vector<BlockAverage::RatioTerm> terms{{1.0, 2, 3}};
   // Without a conservative force this is 0/0: undefined, and written as null.
-  results.scalars.push_back(
-      {prefix + "config_temperature", average_.ratio(2, 3), average_.ratio_error(terms)});
-  if (scene_.settings().mass > 0.0)
-    results.scalars.push_back(
-        {prefix + "kinetic_temperature", average_.mean(4), average_.standard_error(4)});
+  results.scalars.push_back({prefix + "config_temperature", this->average().ratio(2, 3),
+                             this->average().ratio_error(terms)});
+  if (scene_.settings().mass > 0.0 && in_time_)
+    results.scalars.push_back(this->mean_of(4, prefix + "kinetic_temperature"));
 }
 
 template void configurational_terms<2>(const Scene<2>&, const Particles<2>&, const Stage<2>&,

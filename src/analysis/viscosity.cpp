@@ -92,8 +92,7 @@ bool pushed(const SceneSettings<D>& s, ViscosityScene& v) {
 }
 
 Scalar quotient(std::string name, const Scalar* above, const Scalar* below) {
-  if (above == nullptr || below == nullptr || below->mean == 0.0)
-    return {std::move(name), std::nan(""), std::nan("")};
+  if (above == nullptr || below->mean == 0.0) return {std::move(name), std::nan(""), std::nan("")};
   const double value = above->mean / below->mean;
   return {std::move(name), value,
           std::abs(value) *
@@ -176,6 +175,36 @@ Viscosity<D>::Viscosity(ObserverSettings settings, const ViscositySettings& visc
 }
 
 template <int D>
+std::unique_ptr<Observer<D>> Viscosity<D>::make(const ObserverEntry<D>& entry) {
+  ObserverSettings settings = entry.settings();
+  const Config& config = entry.config;
+  const ViscosityScene kind = viscosity_scene(entry.scene);
+  if (kind.kind == ViscosityScene::Kind::none)
+    config.fail("kind",
+                "nothing in this scene shows a viscosity: move a wall, shear it steadily, drive "
+                "the fluid along its walls or by body_force.wave, or leave a fully periodic fluid "
+                "of kT > 0 at rest");
+  ViscositySettings v;
+  if (kind.has_profile()) {
+    v.bins = config.positive_integer("bins", 20);
+    const ProfileSettings p{
+        .axis = kind.axis, .bins = v.bins, .fit_from = kind.from, .fit_to = kind.to};
+    if (fitted_bins(p, entry.scene) < 4)
+      config.fail("bins", fmt::format("at least 4 bins with centres between {} and {} are needed: "
+                                      "use more, or a wider stream",
+                                      kind.from, kind.to));
+  }
+  if (kind.needs_every_step()) {
+    v.window = config.positive("window", v.window);
+    v.fit_from = config.non_negative("fit_from", 0.4 * v.window);
+    if (v.fit_from >= v.window) config.fail("fit_from", "must be less than window");
+    if (settings.every != 1)
+      config.fail("every", "must be 1: the stress is integrated over every step");
+  }
+  return std::make_unique<Viscosity<D>>(std::move(settings), v, entry.scene, entry.clock.dt);
+}
+
+template <int D>
 void Viscosity<D>::measure(const Clock& clock, const Particles<D>& particles,
                            const StepRecord<D>& record) {
   for (auto& part : parts_) part->measure(clock, particles, record);
@@ -218,12 +247,11 @@ std::vector<Scalar> Viscosity<D>::routes(Results& results) const {
     const Scalar* scalar = parts.find("profile.viscosity");
     const bool sine = kind_.kind == ViscosityScene::Kind::sine;
     const std::string route = name + (sine ? ".sine" : ".profile");
-    if (scalar == nullptr) return {{route, std::nan(""), std::nan("")}};
+    if (scalar == nullptr) return {{route}};
     return {{route, scalar->mean, scalar->standard_error}};
   }
   const Scalar* slope = parts.find("profile.slope");
-  if (slope != nullptr)
-    results.scalars.push_back({name + ".shear_rate", slope->mean, slope->standard_error});
+  results.scalars.push_back({name + ".shear_rate", slope->mean, slope->standard_error});
   return {
       quotient(name + ".wall", parts.find(fmt::format("wall.shear_stress.{}", component)), slope),
       quotient(name + ".stress", stress, slope)};

@@ -8,9 +8,15 @@ namespace odpd {
 
 template <int D>
 WallForce<D>::WallForce(ObserverSettings settings, const Scene<D>& scene)
-    : Observer<D>(std::move(settings)),
-      scene_(scene),
-      average_(2 * D * scene.settings().walls.size()) {}
+    : Observer<D>(std::move(settings), 2 * D * scene.settings().walls.size()), scene_(scene) {}
+
+template <int D>
+std::unique_ptr<Observer<D>> WallForce<D>::make(const ObserverEntry<D>& entry) {
+  ObserverSettings settings = entry.settings();
+  if (entry.scene.settings().walls.empty())
+    entry.config.fail("kind", "the scene has no [[wall]] to feel a force");
+  return std::make_unique<WallForce<D>>(std::move(settings), entry.scene);
+}
 
 template <int D>
 std::string WallForce<D>::side(std::size_t wall) const {
@@ -25,7 +31,8 @@ double WallForce<D>::area(std::size_t wall) const {
 
 template <int D>
 void WallForce<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
-                             const std::vector<Vec<D>>& noise_force, double weight) {
+                             const std::vector<Vec<D>>& noise_force, double weight,
+                             std::vector<double>& sample) const {
   std::vector<Vec<D>> force = noise_force;
   add_conservative_forces(stage.network, force);
   add_friction_forces<D>(stage.network, stage.velocity, force);
@@ -34,7 +41,7 @@ void WallForce<D>::add_stage(const Particles<D>& particles, const Stage<D>& stag
     if (!particles.is_known(i) || particles.body_of(i) >= 0) continue;
     const auto wall = static_cast<std::size_t>(particles.group[i] - 1);
     for (int c = 0; c < D; ++c)
-      newest_[wall * D + static_cast<std::size_t>(c)] += weight * force[i][c] / area(wall);
+      sample[wall * D + static_cast<std::size_t>(c)] += weight * force[i][c] / area(wall);
   }
   // The potential pushes a particle off the wall it is behind, and the wall the other way.
   std::vector<Vec<D>> push(stage.position.size());
@@ -44,29 +51,29 @@ void WallForce<D>::add_stage(const Particles<D>& particles, const Stage<D>& stag
     double reaction = 0.0;
     for (const Vec<D>& f : push)
       if (wall.high ? f[wall.axis] < 0.0 : f[wall.axis] > 0.0) reaction -= f[wall.axis];
-    newest_[w * D + static_cast<std::size_t>(wall.axis)] += weight * reaction / area(w);
+    sample[w * D + static_cast<std::size_t>(wall.axis)] += weight * reaction / area(w);
   }
 }
 
 template <int D>
 void WallForce<D>::measure(const Clock&, const Particles<D>& particles,
                            const StepRecord<D>& record) {
-  newest_.assign(average_.width(), 0.0);
+  std::vector<double> sample(this->average().width(), 0.0);
   std::vector<Vec<D>> noise(record.start.position.size());
   if (!record.edge_noise.empty())
     add_edge_forces<D>(record.start.network, record.edge_noise, noise);
-  add_stage(particles, record.start, noise, record.start_weight);
+  add_stage(particles, record.start, noise, record.start_weight, sample);
   if (record.has_corrector())
-    add_stage(particles, record.corrector, noise, 1.0 - record.start_weight);
+    add_stage(particles, record.corrector, noise, 1.0 - record.start_weight, sample);
   const auto& settings = scene_.settings();
   for (std::size_t w = 0; w < settings.walls.size(); ++w) {
     const int facing = settings.wall_at(settings.walls[w].axis, !settings.walls[w].high);
     if (settings.walls[w].high || facing < 0) continue;
     for (std::size_t c = 0; c < D; ++c)
-      newest_[(settings.walls.size() + w) * D + c] =
-          0.5 * (newest_[w * D + c] - newest_[static_cast<std::size_t>(facing) * D + c]);
+      sample[(settings.walls.size() + w) * D + c] =
+          0.5 * (sample[w * D + c] - sample[static_cast<std::size_t>(facing) * D + c]);
   }
-  average_.add(newest_);
+  this->add(std::move(sample));
 }
 
 template <int D>
@@ -81,21 +88,19 @@ std::vector<std::string> WallForce<D>::series_columns() const {
 
 template <int D>
 void WallForce<D>::add_results(Results& results) const {
-  if (average_.samples() == 0) return;
   const auto& settings = scene_.settings();
-  const std::string& name = this->settings().name;
   for (std::size_t w = 0; w < settings.walls.size(); ++w)
     for (std::size_t c = 0; c < D; ++c)
-      results.scalars.push_back({fmt::format("{}.{}.{}", name, side(w), "xyz"[c]),
-                                 average_.mean(w * D + c), average_.standard_error(w * D + c)});
+      results.scalars.push_back(
+          this->mean_of(w * D + c, this->named(fmt::format("{}.{}", side(w), "xyz"[c]))));
   for (std::size_t w = 0; w < settings.walls.size(); ++w) {
     const auto& wall = settings.walls[w];
     if (wall.high || settings.wall_at(wall.axis, true) < 0) continue;
     for (int c = 0; c < D; ++c) {
       if (c == wall.axis) continue;
       const std::size_t column = (settings.walls.size() + w) * D + static_cast<std::size_t>(c);
-      results.scalars.push_back({fmt::format("{}.shear_stress.{}", name, "xyz"[c]),
-                                 average_.mean(column), average_.standard_error(column)});
+      results.scalars.push_back(
+          this->mean_of(column, this->named(fmt::format("shear_stress.{}", "xyz"[c]))));
     }
   }
 }

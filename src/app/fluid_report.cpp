@@ -160,7 +160,7 @@ std::string limits(const Scene<D>& scene) {
 const Scalar* measured_viscosity(const Results& results) {
   if (const Scalar* chosen = results.find("viscosity")) return chosen;
   for (const Scalar& scalar : results.scalars)
-    if (scalar.name.ends_with(".viscosity")) return &scalar;
+    if (scalar.name.ends_with(".viscosity") && !std::isnan(scalar.mean)) return &scalar;
   return nullptr;
 }
 

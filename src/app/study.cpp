@@ -81,24 +81,18 @@ std::string outcome_text(const RunOutcome& outcome, const StudySettings& study) 
   return text + (outcome.status == RunStatus::out_of_time ? " (out of seconds)" : "");
 }
 
-// An observable that no run gives should not come out at the end of a long study.
-void require_observables(const StudySettings& study, const StudyPlan& plan, std::size_t point,
-                         const StudyRun& run, const RunOutcome& outcome,
-                         const fs::path& directory) {
+// A table that no run gives should not come out at the end of a long study.
+void require_tables(const StudySettings& study, const StudyPlan& plan, std::size_t point,
+                    const StudyRun& run, const RunOutcome& outcome, const fs::path& directory) {
   if (outcome.status != RunStatus::done) return;
   const StudyPoint& where = plan.points[point];
   for (const StudyObservable& o : study.observables) {
-    if (where.monte_carlo && o.kind != ReferenceKind::monte_carlo) continue;
-    if (o.table.empty() ? outcome.find(o.name) != nullptr
-                        : fs::exists(directory / run.name / "run" / (o.table + ".csv")))
-      continue;
-    std::string names;
-    for (const auto& number : outcome.observables)
-      names += (names.empty() ? "" : ", ") + number.name;
+    if (o.table.empty() || (where.monte_carlo && o.kind != ReferenceKind::monte_carlo)) continue;
+    if (fs::exists(directory / run.name / "run" / (o.table + ".csv"))) continue;
     throw ConfigError(fmt::format(
-        "{}: the point {} does not measure '{}'; it gives {}, and '<table>.rms' for its tables; "
-        "name one of these, or add an [[observe]] to the case",
-        study.file.string(), where.label, o.name, names));
+        "{}: the point {} gives no table {}.csv for '{}': name one that it gives, or add an "
+        "[[observe]] to the case",
+        study.file.string(), where.label, o.table, o.name));
   }
 }
 
@@ -173,7 +167,7 @@ bool run_points(const StudyExecution& execution, StudyResults& results) {
     fmt::print("; {} to go\n", duration_text(rest));
     std::fflush(stdout);
     if (outcome.status == RunStatus::missing || interrupted()) return false;
-    require_observables(study, results.plan, due[k].point, run, outcome, execution.directory);
+    require_tables(study, results.plan, due[k].point, run, outcome, execution.directory);
   }
   return true;
 }

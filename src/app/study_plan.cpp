@@ -92,9 +92,23 @@ std::string label_of(const StudySettings& study, const std::vector<std::size_t>&
   return label;
 }
 
+// What no run gives should not come out at the end of a long study.
 template <int D>
-void build_in(const Config& config, const CaseSettings& settings, bool measure, StudyRun& run) {
+void check_observables(const StudySettings& study, bool monte_carlo,
+                       const Simulation<D>& simulation) {
+  const Results measured = simulation.results();
+  for (const StudyObservable& o : study.observables) {
+    if (!o.table.empty() || (monte_carlo && o.kind != ReferenceKind::monte_carlo)) continue;
+    if (const std::string why = measured.objection(o.name); !why.empty())
+      throw ConfigError(why + "; name one of these, or add an [[observe]] to the case");
+  }
+}
+
+template <int D>
+void build_in(const StudySettings& study, bool monte_carlo, bool measure, const Config& config,
+              const CaseSettings& settings, StudyRun& run) {
   Simulation<D> simulation(config, settings);
+  check_observables(study, monte_carlo, simulation);
   if (!measure) return;
   constexpr int trials = 3;
   const Stopwatch watch;
@@ -106,20 +120,21 @@ void build_in(const Config& config, const CaseSettings& settings, bool measure, 
 }
 
 // Builds the case: every key is read, and the defaults are known.
-void build(const StudySettings& study, const std::string& label, bool measure, StudyRun& run) {
+void build(const StudySettings& study, const StudyPoint& point, bool measure, StudyRun& run) {
   std::vector<std::string> all = run.overrides;
   const std::vector<std::string> quiet = quiet_overrides();
   all.insert(all.end(), quiet.begin(), quiet.end());
   try {
     const Config config = open_case(study.case_path, all);
     const CaseSettings settings = read_case(config, case_name(study.case_path));
-    settings.dimension == 2 ? build_in<2>(config, settings, measure, run)
-                            : build_in<3>(config, settings, measure, run);
+    settings.dimension == 2 ? build_in<2>(study, point.monte_carlo, measure, config, settings, run)
+                            : build_in<3>(study, point.monte_carlo, measure, config, settings, run);
     run.resolved = portable_case(config);
     run.dt = settings.clock.dt;
     run.steps = settings.clock.total_steps;
   } catch (const ConfigError& e) {
-    throw ConfigError(fmt::format("{}: the point {}: {}", study.file.string(), label, e.what()));
+    throw ConfigError(
+        fmt::format("{}: the point {}: {}", study.file.string(), point.label, e.what()));
   }
 }
 
@@ -131,7 +146,7 @@ void add_runs(const StudySettings& study, const ConfigValues& keys, bool measure
     ConfigValues all = keys;
     all.emplace_back("seed", std::to_string(seed));
     run.overrides = overrides(all);
-    build(study, point.label, measure && seed == 1, run);
+    build(study, point, measure && seed == 1, run);
     run.name = directory_name(fmt::format("{},seed={}", point.label, seed), run.resolved);
     run.step_seconds = seed == 1 ? run.step_seconds : point.runs.front().step_seconds;
     point.runs.push_back(std::move(run));

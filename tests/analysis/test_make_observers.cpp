@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "odpd/analysis/observer.h"
+#include "odpd/analysis/registry.h"
 #include "records.h"
 #include "support/errors.h"
 
@@ -19,7 +19,7 @@ class MakeObservers : public ::testing::Test {
 
   std::vector<std::unique_ptr<odpd::Observer<2>>> make(const std::string& text) const {
     const Config config = Config::from_text(text, "case.toml");
-    auto observers = odpd::make_observers(config, scene, odpd::Clock{.dt = 0.02});
+    auto observers = odpd::make_observers<2>(config, scene, odpd::Clock{.dt = 0.02});
     config.reject_unread();
     return observers;
   }
@@ -45,7 +45,8 @@ TEST_F(MakeObservers, ThermoAndMsdAreAlwaysThere) {
 TEST_F(MakeObservers, WithoutTimeThereIsNoMsd) {
   for (const char* text : {"", "[[observe]]\nkind = \"msd\"\nwindow = 2.0\n"}) {
     const Config config = Config::from_text(text, "case.toml");
-    const auto observers = odpd::make_observers(config, scene, odpd::Clock{.dt = 1.0}, false);
+    const auto observers =
+        odpd::make_observers<2>(config, scene, odpd::Clock{.dt = 1.0}, false);
     config.reject_unread();
     ASSERT_EQ(observers.size(), 1u);
     EXPECT_EQ(observers[0]->settings().kind, "thermo");
@@ -80,7 +81,7 @@ TEST_F(MakeObservers, SampleATimeWindowOnly) {
   const auto made = [&](const std::string& keys) {
     const Config config =
         Config::from_text("[[observe]]\nkind = \"thermo\"\nevery = 4\n" + keys, "case.toml");
-    auto observers = odpd::make_observers(config, scene, clock);
+    auto observers = odpd::make_observers<2>(config, scene, clock);
     config.reject_unread();
     return observers;
   };
@@ -122,7 +123,7 @@ TEST_F(MakeObservers, RefuseWhatTheSceneHasNot) {
                           std::initializer_list<const char*> parts) {
     const Scene<2> other(std::move(s));
     const Config config = Config::from_text("[[observe]]\nkind = \"" + kind + "\"\n", "case.toml");
-    expect_error<ConfigError>([&] { odpd::make_observers(config, other, odpd::Clock{.dt = 0.02}); },
+    expect_error<ConfigError>([&] { odpd::make_observers<2>(config, other, odpd::Clock{.dt = 0.02}); },
                               parts);
   };
   const auto s = records::periodic<2>(5.0, {{{1.0, 1.0}}, {{3.0, 3.0}}});

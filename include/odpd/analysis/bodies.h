@@ -30,11 +30,11 @@ class Bodies : public Observer<D> {
   /// in_time: steps are steps in time; otherwise (Monte Carlo) there are neither velocities nor diffusion.
   Bodies(ObserverSettings settings, BodiesSettings bodies, const Scene<D>& scene, double dt,
          bool in_time = true);
+  static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   std::vector<std::string> series_columns() const override;
-  std::vector<double> series_row() const override { return newest_; }
   void save(StateWriter& out) const override;
   void load(const StateReader& in) override;
 
@@ -42,8 +42,10 @@ class Bodies : public Observer<D> {
   static constexpr std::size_t turns = rotation_components<D>;
   static constexpr std::size_t width = 2 * (D + turns);  // columns of a [[body]]
   void add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& noise,
-                 const std::vector<Vec<D>>& noise_arms, double weight);
-  void add_motion(const Particles<D>& particles, const StepRecord<D>& record);
+                 const std::vector<Vec<D>>& noise_arms, double weight,
+                 std::vector<double>& sample) const;
+  void add_motion(const Particles<D>& particles, const StepRecord<D>& record,
+                  std::vector<double>& sample) const;
   void follow(const Particles<D>& particles);
   void count_fluid(const Particles<D>& particles, const Stage<D>& stage);
   void add_diffusion(const std::string& name, std::size_t kind, Results& results) const;
@@ -57,12 +59,11 @@ class Bodies : public Observer<D> {
   std::vector<double> share_;                      // 1/bodies of each [[body]]
   std::vector<std::vector<std::size_t>> members_;  // of each body, in this sample
   std::size_t bins_;
-  BlockAverage average_;  // [[body]] after [[body]], then the fluid's velocity
+  // A sample: [[body]] after [[body]], then the fluid's velocity.
   BlockAverage density_;  // [kind * bins + bin]
   Displacements places_, turns_;
   std::vector<double> angle_;        // rotation so far, D numbers per body
   std::vector<double> orientation_;  // at the last sample
-  std::vector<double> newest_;
 };
 
 }  // namespace odpd

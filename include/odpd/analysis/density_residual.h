@@ -8,7 +8,6 @@
 // radius 1): they are not among the N_b. Both contain sampling noise that falls with the averaging time. `noise` is what the standard errors of the n_b (block averaging)
 // make of the thesis' number alone, sqrt(sum_b error_b^2 / N_b), and excess = sqrt(max(thesis^2 - noise^2, 0)) is what is left: 0 for
 // an even fluid however short the run. What walls do to the fluid at rest stays in it: subtract a run at rest of the same length.
-#include "odpd/analysis/block_average.h"
 #include "odpd/analysis/grid.h"
 #include "odpd/analysis/observer.h"
 
@@ -20,24 +19,23 @@ class DensityResidual : public Observer<D> {
   /// bins: D counts. clear_of_bodies: cells whose centre is nearer than this to a body's are left out.
   DensityResidual(ObserverSettings settings, const typename Grid<D>::Counts& bins,
                   const Scene<D>& scene, double clear_of_bodies = 0.0);
+  static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   std::vector<std::string> series_columns() const override {
     return {"paper_instant", "thesis_instant"};
   }
-  std::vector<double> series_row() const override { return newest_; }
-  std::size_t cells() const { return average_.width(); }
-  void save(StateWriter& out) const override { average_.save(out, "average"); }
-  void load(const StateReader& in) override { average_.load(in, "average"); }
+  std::vector<double> series_row() const override { return instant_; }
+  std::size_t cells() const { return this->average().width(); }
 
  private:
+  DensityResidual(ObserverSettings settings, Grid<D> grid, std::vector<std::size_t> column);
   double thesis_residual(std::span<const double> counts) const;
 
   Grid<D> grid_;
   std::vector<std::size_t> column_;  // of each cell of the grid; none where it is left out
-  BlockAverage average_;
-  std::vector<double> newest_;
+  std::vector<double> instant_;
 };
 
 }  // namespace odpd

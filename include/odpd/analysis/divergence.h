@@ -8,7 +8,6 @@
 //   <name>.relative  sqrt(max(rms^2 - noise^2, 0)) / gradient
 //
 // (The measure behind fig. 8 of Phan-Thien et al. 2016, which gives no normalisation, and states no noise.)
-#include "odpd/analysis/block_average.h"
 #include "odpd/analysis/grid.h"
 #include "odpd/analysis/observer.h"
 
@@ -19,13 +18,11 @@ class Divergence : public Observer<D> {
  public:
   Divergence(ObserverSettings settings, const typename Grid<D>::Counts& cells,
              const Scene<D>& scene);
+  static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   std::vector<std::string> series_columns() const override;
-  std::vector<double> series_row() const override { return newest_; }
-  void save(StateWriter& out) const override { average_.save(out, "average"); }
-  void load(const StateReader& in) override { average_.load(in, "average"); }
 
  private:
   using Terms = std::vector<BlockAverage::RatioTerm>;
@@ -33,11 +30,11 @@ class Divergence : public Observer<D> {
   /// Adds d_a u_b at the cell, times `weight`, as ratios of columns.
   void add_derivative(std::size_t cell, int a, int b, Terms& terms) const;
   Terms divergence_at(std::size_t cell) const;
+  bool every_cell_was_visited() const;
 
+  // A sample: count and D velocity sums per cell.
   const Scene<D>& scene_;
   Grid<D> grid_;
-  BlockAverage average_;  // count and D velocity sums per cell
-  std::vector<double> newest_;
 };
 
 }  // namespace odpd

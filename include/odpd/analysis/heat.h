@@ -12,7 +12,6 @@
 //
 // residual: the largest miss of that over stages and samples, over sum_edges -F_D . slip (v . R v alone holds the noise's power,
 // 2 kT/dt per degree of freedom). `extrapolated` and `implicit` solve another balance in a step: theirs does not close.
-#include "odpd/analysis/block_average.h"
 #include "odpd/analysis/observer.h"
 
 namespace odpd {
@@ -21,25 +20,22 @@ template <int D>
 class Heat : public Observer<D> {
  public:
   Heat(ObserverSettings settings, const Scene<D>& scene)
-      : Observer<D>(std::move(settings)), scene_(scene), average_(5) {}
+      : Observer<D>(std::move(settings),
+                    {"produced", "walls", "body_force", "shear", "energy_rate"}),
+        scene_(scene) {}
+  static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
-  std::vector<std::string> series_columns() const override {
-    return {"produced", "walls", "body_force", "shear", "energy_rate"};
-  }
-  std::vector<double> series_row() const override { return newest_; }
   void save(StateWriter& out) const override;
   void load(const StateReader& in) override;
 
  private:
   void add_stage(const Particles<D>& particles, const Stage<D>& stage, const StepRecord<D>& record,
-                 double weight);
+                 double weight, std::vector<double>& sample);
 
   const Scene<D>& scene_;
   double worst_ = 0.0;
-  BlockAverage average_;  // in the order of the series
-  std::vector<double> newest_;
 };
 
 }  // namespace odpd

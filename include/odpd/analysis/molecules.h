@@ -18,6 +18,7 @@ class MoleculeStatistics : public Observer<D> {
   /// `in_time`: steps are steps in time; otherwise there is no diffusion.
   MoleculeStatistics(ObserverSettings settings, MsdSettings msd, const Scene<D>& scene, double dt,
                      bool in_time);
+  static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
@@ -36,9 +37,8 @@ class MoleculeStatistics : public Observer<D> {
   std::vector<double> population_;  // molecules of each kind
   // Of each kind: bonds that reach all beads from the first on, as (bead reached already, next bead).
   std::vector<std::vector<std::array<std::size_t, 2>>> tree_;
-  BlockAverage shape_;  // per kind: length, its square, R_g^2, square distance from the sites
+  // A sample, per kind: length, its square, R_g^2, square distance from the sites.
   Displacements displacements_;
-  std::vector<double> newest_;
 };
 
 }  // namespace odpd

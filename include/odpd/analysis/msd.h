@@ -12,11 +12,18 @@ struct MsdSettings {
   std::vector<int> directions;  ///< components that count
 };
 
+/// Reads window, fit_from and directions. Throws ConfigError.
+template <int D>
+MsdSettings read_msd(const ObserverEntry<D>& entry);
+/// Steps between samples by default: fifty lags of up to 0.06 time units.
+std::int64_t msd_interval(const Clock& clock);
+
 template <int D>
 class Msd : public Observer<D> {
  public:
   /// lags are multiples of every * dt.
   Msd(ObserverSettings settings, MsdSettings msd, const Scene<D>& scene, double dt);
+  static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;

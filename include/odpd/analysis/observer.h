@@ -1,24 +1,20 @@
 #pragma once
 // Observers only read the state. Each samples every so many steps of the measured part of a run and gives numbers with
-// standard errors by block averaging, tables and charts. Made by kind from the case file's [[observe]] entries:
+// standard errors by block averaging, tables and charts. Which kinds there are stands in one table (analysis/registry.h).
 //
-//   thermo            energy per particle, pressure, configurational temperature
-//   profile           density, velocity and configurational temperature across bins, with a fit
-//   density-residual  unevenness of the time-averaged density on a grid
-//   divergence        of the time-averaged flow on a grid
-//   rdf               radial distribution functions per pair of species
-//   wall-force        force per area on each wall, shear stress between two
-//   bodies            force, torque, motion and diffusion of obstacles and rigid bodies, the fluid around them
-//   stress            stress tensor, overall and by bins, and the parts of the pressure
-//   viscosity         by every route that the scene allows
-//   heat              produced heat, power put in, change of energy
-//   msd               mean-square displacement and self-diffusion per species
-//   molecules         lengths of bonds, radius of gyration and diffusion of each kind of molecule
+// The smallest one names the numbers of a sample and measures them; averages, series and checkpoint follow:
+//
+//   class MeanSpeed : public Observer<2> {
+//    public:
+//     explicit MeanSpeed(ObserverSettings s) : Observer<2>(std::move(s), {"mean", "largest"}) {}
+//     void measure(const Clock&, const Particles<2>&, const StepRecord<2>& record) override { ... add({mean, largest}); }
+//   };
 #include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "odpd/analysis/block_average.h"
 #include "odpd/analysis/results.h"
 #include "odpd/core/archive.h"
 #include "odpd/core/config.h"
@@ -38,10 +34,25 @@ struct ObserverSettings {
   std::int64_t from = 0, until = std::numeric_limits<std::int64_t>::max();
 };
 
+/// What an observer is made from: its [[observe]] table and the run that it will look at.
+template <int D>
+struct ObserverEntry {
+  std::string kind;
+  const Config& config;
+  const Scene<D>& scene;  ///< outlives the observer
+  const Clock& clock;
+  bool in_time =
+      true;  ///< steps are steps in time; otherwise (Monte Carlo) there are no velocities
+
+  /// Reads the keys of every observer: name, every, series, from, until. Throws ConfigError.
+  ObserverSettings settings(std::int64_t default_every = 1) const;
+};
+
 template <int D>
 class Observer {
  public:
-  explicit Observer(ObserverSettings settings) : settings_(std::move(settings)) {}
+  Observer(const Observer&) = delete;
+  Observer& operator=(const Observer&) = delete;
   virtual ~Observer() = default;
   const ObserverSettings& settings() const { return settings_; }
 
@@ -50,28 +61,43 @@ class Observer {
     return clock.measuring() && step % settings_.every == 0 && step > settings_.from &&
            step <= settings_.until;
   }
-  /// One sample from the step just done (clock.step already advanced past it).
+  /// One sample from the step just done (clock.step already advanced past it): hands its numbers to `add`.
   virtual void measure(const Clock& clock, const Particles<D>& particles,
                        const StepRecord<D>& record) = 0;
-  virtual void add_results(Results& results) const = 0;
 
-  /// Columns after `time`, and the row of the newest sample (empty: nothing new to write).
-  virtual std::vector<std::string> series_columns() const = 0;
-  virtual std::vector<double> series_row() const = 0;
+  /// Adds all it has. The names of its scalars are the same at any time, their values NaN where there is nothing to tell (yet): what a
+  /// case asks for is compared with them before it runs. Tables and charts come with the first sample. Unless overridden: the
+  /// mean of each column, as <name>.<column>.
+  virtual void add_results(Results& results) const;
 
-  virtual void save(StateWriter& out) const = 0;
-  virtual void load(const StateReader& in) = 0;
+  /// Columns after `time`, and the row of the newest sample (empty: nothing new to write). Unless overridden: the sample.
+  virtual std::vector<std::string> series_columns() const { return columns_; }
+  virtual std::vector<double> series_row() const { return newest_; }
+
+  /// What a restart needs. Unless overridden: the averages.
+  virtual void save(StateWriter& out) const;
+  virtual void load(const StateReader& in);
+
+ protected:
+  /// A sample has one number for each of `columns`.
+  Observer(ObserverSettings settings, std::vector<std::string> columns);
+  /// A sample has `width` numbers, named by whoever overrides add_results and series_columns. 0: it keeps other sums.
+  explicit Observer(ObserverSettings settings, std::size_t width = 0);
+
+  /// The one way into the averages.
+  void add(std::vector<double> sample);
+  const BlockAverage& average() const { return average_; }
+  const std::vector<double>& newest() const { return newest_; }
+  /// <name>.<what>
+  std::string named(const std::string& what) const { return settings_.name + "." + what; }
+  /// Mean and standard error of a column.
+  Scalar mean_of(std::size_t column, std::string scalar_name) const;
 
  private:
   ObserverSettings settings_;
+  std::vector<std::string> columns_;
+  BlockAverage average_;
+  std::vector<double> newest_;
 };
-
-/// The observers of a case: its [[observe]] entries, and `thermo` and `msd` with their defaults when it names none of
-/// that kind. Without `steps_are_time` (Monte Carlo) there is no `msd` (nor others that need motion): the default one is not made,
-/// a named one is left out with a warning. `scene` must outlive them. Throws ConfigError for unknown kinds and bad keys.
-template <int D>
-std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
-                                                         const Scene<D>& scene, const Clock& clock,
-                                                         bool steps_are_time = true);
 
 }  // namespace odpd

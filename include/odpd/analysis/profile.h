@@ -14,7 +14,6 @@
 //             viscosity n F L^2/(4 pi^2 k^2 A), that of this wavelength
 #include <optional>
 
-#include "odpd/analysis/block_average.h"
 #include "odpd/analysis/least_squares.h"
 #include "odpd/analysis/observer.h"
 
@@ -30,17 +29,20 @@ struct ProfileSettings {
   double fit_from = 0.0, fit_to = 0.0;  ///< coordinates; bins whose centres lie between are fitted
 };
 
+/// How many bins a fit would use: their centres lie in its range.
+template <int D>
+std::int64_t fitted_bins(const ProfileSettings& p, const Scene<D>& scene);
+
 template <int D>
 class Profile : public Observer<D> {
  public:
   Profile(ObserverSettings settings, ProfileSettings profile, const Scene<D>& scene);
+  static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   std::vector<std::string> series_columns() const override;
   std::vector<double> series_row() const override;
-  void save(StateWriter& out) const override { average_.save(out, "average"); }
-  void load(const StateReader& in) override { average_.load(in, "average"); }
 
  private:
   // Columns of a bin: count, D velocity sums, |F|^2, laplacian.
@@ -49,8 +51,9 @@ class Profile : public Observer<D> {
   std::int64_t bin_of(const Vec<D>& r) const;
   double centre(std::size_t bin) const;
   Table table() const;
-  // The fit over its bins, and the column pairs whose ratios it is linear in; none without errors to weigh them by.
+  // The fit over its bins, and the column pairs whose ratios it is linear in; NaN without errors to weigh them by.
   struct FittedBins {
+    bool found = false;
     PolynomialFit fit;
     std::vector<BlockAverage::RatioTerm> bins;
     double density = 0.0;  // mean over these bins
@@ -59,8 +62,8 @@ class Profile : public Observer<D> {
   struct WallSpeeds {
     double low = 0.0, high = 0.0;
   };
-  std::optional<FittedBins> fit_bins() const;
-  double abscissa(double x, double width) const;
+  FittedBins fit_bins() const;
+  double abscissa(double x, double bin_width) const;
   double fitted_force() const;
   double coefficient_error(const FittedBins& fitted, std::size_t power) const;
   void add_fit(Results& results, Chart& chart) const;
@@ -73,8 +76,6 @@ class Profile : public Observer<D> {
   ProfileSettings profile_;
   const Scene<D>& scene_;
   double low_, high_;
-  BlockAverage average_;
-  std::vector<double> newest_;
 };
 
 }  // namespace odpd

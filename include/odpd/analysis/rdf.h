@@ -12,7 +12,6 @@
 // Both contain the noise of the bins; the second carries the standard error of the bin where it is.
 #include <optional>
 
-#include "odpd/analysis/block_average.h"
 #include "odpd/analysis/observer.h"
 
 namespace odpd {
@@ -27,13 +26,11 @@ class Rdf : public Observer<D> {
  public:
   Rdf(ObserverSettings settings, double r_max, std::int64_t bins, const Scene<D>& scene,
       std::optional<RdfComparison> comparison = {});
+  static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   std::vector<std::string> series_columns() const override;
-  std::vector<double> series_row() const override { return newest_; }
-  void save(StateWriter& out) const override { average_.save(out, "average"); }
-  void load(const StateReader& in) override { average_.load(in, "average"); }
 
  private:
   std::size_t pair_index(std::int32_t a, std::int32_t b) const;
@@ -49,8 +46,6 @@ class Rdf : public Observer<D> {
   const Scene<D>& scene_;
   std::size_t species_;
   std::optional<RdfComparison> comparison_;
-  BlockAverage average_;
-  std::vector<double> newest_;
 };
 
 }  // namespace odpd

@@ -1,5 +1,6 @@
 #pragma once
 // What observers give at the end of a run: numbers with errors, tables and charts.
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,12 +9,20 @@
 
 namespace odpd {
 
-/// A measured number. `standard_error` is NaN while there are too few independent blocks for one.
+/// A measured number; NaN: undefined. `standard_error` is NaN while there are too few independent blocks for one.
 struct Scalar {
   std::string name;
-  double mean = 0.0;
-  double standard_error = 0.0;
+  double mean = std::numeric_limits<double>::quiet_NaN();
+  double standard_error = std::numeric_limits<double>::quiet_NaN();
+  bool has_error =
+      true;  ///< false: it never has a standard error, as a count or the largest of many
 };
+
+/// One of the latter.
+inline Scalar without_error(std::string name, double value,
+                            double standard_error = std::numeric_limits<double>::quiet_NaN()) {
+  return {std::move(name), value, standard_error, false};
+}
 
 struct Results {
   std::vector<Scalar> scalars;
@@ -26,6 +35,8 @@ struct Results {
       if (s.name == name) return &s;
     return nullptr;
   }
+  /// Empty where `name` is among the scalars, else that it is not, with the nearest one and those that there are.
+  std::string objection(const std::string& name) const;
 };
 
 }  // namespace odpd

@@ -17,7 +17,6 @@
 // .pressure.kinetic, .conservative, .friction, .noise. At equilibrium friction and noise add nothing, as dt -> 0, and the pressure is
 // that of `thermo`. Schemes with one stage (euler, extrapolated, implicit) at mass 0 take friction before the motion alone: biased,
 // and a note says so.
-#include "odpd/analysis/block_average.h"
 #include "odpd/analysis/observer.h"
 
 namespace odpd {
@@ -41,6 +40,7 @@ template <int D>
 class Stress : public Observer<D> {
  public:
   Stress(ObserverSettings settings, StressBins bins, const Scene<D>& scene);
+  static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
@@ -51,7 +51,7 @@ class Stress : public Observer<D> {
 
  private:
   static constexpr std::size_t components = D * D;
-  // Columns of the averages: the parts, their sum, the pressures (total and by part), the bins.
+  // Columns of a sample: the parts, their sum, the pressures (total and by part), the bins.
   static constexpr std::size_t total_column = stress_parts * components;
   static constexpr std::size_t pressure_column = total_column + components;
   static constexpr std::size_t bin_column = pressure_column + 1 + stress_parts;
@@ -60,8 +60,6 @@ class Stress : public Observer<D> {
   StressBins bins_;
   const Scene<D>& scene_;
   bool one_stage_ = false;  // some sample came from a massless step without a second stage
-  BlockAverage average_;
-  std::vector<double> newest_;
 };
 
 }  // namespace odpd

@@ -11,7 +11,6 @@
 //                            own kinetic energy is in it
 //
 // N: free particles; V: the volume between wall surfaces; edges to wall particles count half in the virial.
-#include "odpd/analysis/block_average.h"
 #include "odpd/analysis/observer.h"
 
 namespace odpd {
@@ -19,19 +18,16 @@ namespace odpd {
 template <int D>
 class Thermo : public Observer<D> {
  public:
-  Thermo(ObserverSettings settings, const Scene<D>& scene);
+  /// in_time: with mass there are velocities, and with them a kinetic temperature.
+  Thermo(ObserverSettings settings, const Scene<D>& scene, bool in_time = true);
+  static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
-  std::vector<std::string> series_columns() const override;
-  std::vector<double> series_row() const override { return newest_; }
-  void save(StateWriter& out) const override { average_.save(out, "average"); }
-  void load(const StateReader& in) override { average_.load(in, "average"); }
 
  private:
   const Scene<D>& scene_;
-  BlockAverage average_;  // energy, pressure, |F|^2, laplacian, kinetic temperature
-  std::vector<double> newest_;
+  bool in_time_;
 };
 
 /// Kinetic temperature of these velocities, one per particle (0 without mass).

@@ -46,6 +46,7 @@ class Viscosity : public Observer<D> {
  public:
   Viscosity(ObserverSettings settings, const ViscositySettings& viscosity, const Scene<D>& scene,
             double dt);
+  static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;

@@ -6,7 +6,6 @@
 // F_B is that of the step's start in both stages. Scalars: <name>.<side>.<direction>, force per wall area; and with two
 // walls facing each other along y, <name>.shear_stress.x = (F_low - F_high)/(2 area) along x: half of what drags the lower
 // wall forward and holds the upper one back.
-#include "odpd/analysis/block_average.h"
 #include "odpd/analysis/observer.h"
 
 namespace odpd {
@@ -15,23 +14,21 @@ template <int D>
 class WallForce : public Observer<D> {
  public:
   WallForce(ObserverSettings settings, const Scene<D>& scene);
+  static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   std::vector<std::string> series_columns() const override;
-  std::vector<double> series_row() const override { return newest_; }
-  void save(StateWriter& out) const override { average_.save(out, "average"); }
-  void load(const StateReader& in) override { average_.load(in, "average"); }
 
  private:
   std::string side(std::size_t wall) const;
   double area(std::size_t wall) const;
   void add_stage(const Particles<D>& particles, const Stage<D>& stage,
-                 const std::vector<Vec<D>>& noise_force, double weight);
+                 const std::vector<Vec<D>>& noise_force, double weight,
+                 std::vector<double>& sample) const;
 
+  // A sample: force per area, wall by wall, D components each; then shear stresses.
   const Scene<D>& scene_;
-  BlockAverage average_;  // force per area, wall by wall, D components each; then shear stresses
-  std::vector<double> newest_;
 };
 
 }  // namespace odpd

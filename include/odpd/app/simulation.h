@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "odpd/analysis/observer.h"
+#include "odpd/analysis/registry.h"
 #include "odpd/app/blow_up.h"
 #include "odpd/app/case.h"
 #include "odpd/app/scene_frame.h"
@@ -20,8 +20,10 @@ namespace odpd {
 template <int D>
 class Simulation {
  public:
-  /// Builds everything the case names and rejects keys that nobody read. Throws ConfigError, IoError.
-  Simulation(const Config& config, CaseSettings settings);
+  /// Builds everything the case names and rejects keys that nobody read; `own_observers`: kinds that [[observe]] may name besides
+  /// those of odpd. Throws ConfigError, IoError.
+  Simulation(const Config& config, CaseSettings settings,
+             const std::vector<ObserverKind<D>>& own_observers = {});
 
   const CaseSettings& settings() const { return settings_; }
   const Clock& clock() const { return clock_; }
@@ -51,6 +53,7 @@ class Simulation {
   bool stopped_at_target() const { return stopped_at_target_; }
 
   Frame frame() const { return scene_frame(scene_, clock_); }
+  /// All that was measured so far; names are complete from the start.
   Results results() const;
   /// Particles the mirror caught during the measured part: every check fails when there were any.
   std::int64_t alarm_crossings() const { return alarm_crossings_; }
@@ -66,7 +69,6 @@ class Simulation {
   const StepRecord<D>& named_step();
   [[noreturn]] void explain(const SolverError& error);
   void check_observables(const Config& config) const;
-  void check_observable(const Config& entry) const;
   void stop_at_target();
   /// The state that was judged last.
   Stage<D>& judged() const { return integrator_->spare_stage(); }

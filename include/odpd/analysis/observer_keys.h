@@ -1,0 +1,27 @@
+#pragma once
+// Keys that several observers read. All throw ConfigError.
+#include <string>
+
+#include "odpd/analysis/grid.h"
+#include "odpd/analysis/observer.h"
+
+namespace odpd {
+
+/// A direction by its name: x, y or z.
+template <int D>
+int read_direction(const Config& config, const std::string& key, int fallback);
+
+/// `axis`, by default where a profile makes sense: across a shear, along the first bounded direction, or along that in which the
+/// force varies.
+template <int D>
+int read_axis(const ObserverEntry<D>& entry);
+
+/// `bins`, D counts; by default cells near 1 wide.
+template <int D>
+typename Grid<D>::Counts read_cells(const ObserverEntry<D>& entry);
+
+/// `r_max` of distances between particles: at most half the shortest periodic edge, by default two cutoffs.
+template <int D>
+double read_r_max(const ObserverEntry<D>& entry);
+
+}  // namespace odpd

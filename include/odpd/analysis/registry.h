@@ -1,0 +1,35 @@
+#pragma once
+// Which observers there are, and those of a case.
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "odpd/analysis/observer.h"
+
+namespace odpd {
+
+/// A kind of observer, as [[observe]] names it.
+template <int D>
+struct ObserverKind {
+  std::string name;
+  /// Reads the kind's keys. Throws ConfigError.
+  std::function<std::unique_ptr<Observer<D>>(const ObserverEntry<D>&)> make;
+  bool of_motion =
+      false;  ///< measures by velocities or time: left out, with a warning, of Monte Carlo
+  bool always = false;  ///< every run has one, with its defaults where the case names none
+};
+
+/// The table of all kinds.
+template <int D>
+const std::vector<ObserverKind<D>>& observer_kinds();
+
+/// The observers of a case: its [[observe]] entries, of the kinds of the table and of `own`, and those that are always there. Without
+/// `steps_are_time` (Monte Carlo) those of motion are left out. `scene` must outlive them. Throws ConfigError for unknown
+/// kinds, bad keys, names given twice.
+template <int D>
+std::vector<std::unique_ptr<Observer<D>>> make_observers(
+    const Config& config, const Scene<D>& scene, const Clock& clock, bool steps_are_time = true,
+    const std::vector<ObserverKind<D>>& own = {});
+
+}  // namespace odpd

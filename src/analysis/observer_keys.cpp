@@ -1,0 +1,78 @@
+#include "odpd/analysis/observer_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace odpd {
+
+template <int D>
+int read_direction(const Config& config, const std::string& key, int fallback) {
+  std::vector<std::string> names;
+  for (int c = 0; c < D; ++c) names.emplace_back(1, "xyz"[c]);
+  return config.choice(key, names, {"xyz"[fallback]})[0] - 'x';
+}
+
+namespace {
+
+template <int D>
+int default_axis(const Scene<D>& scene) {
+  if (scene.box().shear) return scene.box().shear->gradient;
+  for (int c = 0; c < D; ++c)
+    if (!scene.box().is_periodic(c)) return c;
+  const auto& s = scene.settings();
+  if (s.force_wave.number > 0) return s.force_wave.along;
+  if (!s.force_regions.empty()) return s.force_regions[0].axis;
+  return 1;
+}
+
+}  // namespace
+
+template <int D>
+int read_axis(const ObserverEntry<D>& entry) {
+  return read_direction<D>(entry.config, "axis", default_axis(entry.scene));
+}
+
+template <int D>
+typename Grid<D>::Counts read_cells(const ObserverEntry<D>& entry) {
+  const Vec<D> extent = entry.scene.fluid_high() - entry.scene.fluid_low();
+  std::vector<double> fallback;
+  for (int c = 0; c < D; ++c) fallback.push_back(std::max(1.0, std::round(extent[c])));
+  const std::vector<double> given = entry.config.numbers("bins", fallback);
+  if (given.size() != D) entry.config.fail("bins", fmt::format("{} counts are needed", D));
+  typename Grid<D>::Counts bins{};
+  for (std::size_t c = 0; c < given.size(); ++c) {
+    bins[c] = static_cast<std::int64_t>(given[c]);
+    if (bins[c] < 1 || static_cast<double>(bins[c]) != given[c])
+      entry.config.fail("bins", "counts must be whole and positive");
+  }
+  return bins;
+}
+
+template <int D>
+double read_r_max(const ObserverEntry<D>& entry) {
+  const Box<D>& box = entry.scene.box();
+  double most = std::numeric_limits<double>::infinity();
+  for (int c = 0; c < D; ++c)
+    if (box.is_periodic(c)) most = std::min(most, 0.5 * box.size[c]);
+  const double r_max =
+      entry.config.positive("r_max", std::min(most, 2.0 * entry.scene.model().cutoff()));
+  if (r_max > most)
+    entry.config.fail(
+        "r_max",
+        fmt::format("must be at most half the shortest periodic edge of the box, {}", most));
+  return r_max;
+}
+
+#define ODPD_INSTANTIATE(D)                                                 \
+  template int read_direction<D>(const Config&, const std::string&, int);   \
+  template int read_axis<D>(const ObserverEntry<D>&);                       \
+  template typename Grid<D>::Counts read_cells<D>(const ObserverEntry<D>&); \
+  template double read_r_max<D>(const ObserverEntry<D>&);
+ODPD_INSTANTIATE(2)
+ODPD_INSTANTIATE(3)
+#undef ODPD_INSTANTIATE
+
+}  // namespace odpd

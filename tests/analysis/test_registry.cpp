@@ -1,0 +1,218 @@
+// What every kind of observer must do, over the rows of the table; and kinds of a user's own.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "odpd/analysis/registry.h"
+#include "odpd/dynamics/integrator.h"
+#include "records.h"
+#include "support/errors.h"
+#include "support/memory_archive.h"
+
+namespace {
+
+using odpd::Config;
+using odpd::Observer;
+using odpd::ObserverEntry;
+using odpd::ObserverKind;
+using odpd::Results;
+using odpd::Scene;
+
+using Observers = std::vector<std::unique_ptr<Observer<2>>>;
+
+/// A scene in which every kind finds what it measures: moving walls, a free body, a molecule.
+odpd::SceneSettings<2> everything() {
+  const Config config = Config::from_text(R"(
+    [box]
+    size = [6.0, 8.0]
+    periodic = [true, false]
+    [fluid]
+    density = 4.0
+    kT = 1.0
+    a = 18.5
+    gamma = 4.5
+    [[species]]
+    name = "fluid"
+    fraction = 1.0
+    [[species]]
+    name = "bead"
+    count = 0
+    [[wall]]
+    side = "y-"
+    velocity = [-1.0, 0.0]
+    layers = [{ depth = 0.0, count = 30 }, { depth = 0.5, count = 12 }]
+    [[wall]]
+    side = "y+"
+    velocity = [1.0, 0.0]
+    layers = [{ depth = 0.0, count = 30 }, { depth = 0.5, count = 12 }]
+    [[body]]
+    name = "disk"
+    shape = "disk"
+    radius = 0.3
+    positions = [{ at = [2.0, 3.0] }]
+    [[molecule]]
+    name = "triangle"
+    shape = "simplex"
+    spacing = 0.25
+    species = "bead"
+    H = 1000.0
+    count = 2
+  )",
+                                          "everything");
+  return odpd::read_scene_settings<2>(config);
+}
+
+std::vector<std::string> names(const Results& results) {
+  std::vector<std::string> list;
+  for (const auto& scalar : results.scalars) list.push_back(scalar.name);
+  return list;
+}
+
+class Registry : public ::testing::Test {
+ protected:
+  Registry()
+      : scene(everything()),
+        dynamics(scene.box(), scene.particles(), scene.model(), scene,
+                 odpd::make_solver({.name = "pcg", .tolerance = 1e-5}), {.seed = 3, .kT = 1.0}),
+        integrator(odpd::make_integrator<2>("trapezoidal")) {}
+
+  /// The one observer of these keys besides those that are always there.
+  std::unique_ptr<Observer<2>> make(const std::string& text,
+                                    const std::vector<ObserverKind<2>>& own = {}) const {
+    const Config config = Config::from_text("[[observe]]\n" + text, "case.toml");
+    Observers observers = odpd::make_observers<2>(config, scene, clock, true, own);
+    config.reject_unread();
+    return std::move(observers.front());
+  }
+  void run(std::int64_t steps, const std::vector<Observer<2>*>& observers) {
+    for (std::int64_t k = 0; k < steps; ++k) {
+      const auto& record = integrator->step(dynamics, clock);
+      clock.advance();
+      for (Observer<2>* observer : observers)
+        if (observer->is_due(clock)) observer->measure(clock, scene.particles(), record);
+    }
+  }
+
+  Scene<2> scene;
+  odpd::Dynamics<2> dynamics;
+  std::unique_ptr<odpd::Integrator<2>> integrator;
+  odpd::Clock clock{.dt = 0.02, .total_steps = 400};
+};
+
+// Long enough for all of them: the longest windows are 3 time units. The second set begins in the middle, from the state of the first.
+TEST_F(Registry, EveryKindNamesWhatItGivesAndContinues) {
+  Observers through, continued;
+  std::vector<std::vector<std::string>> promised;
+  for (const ObserverKind<2>& kind : odpd::observer_kinds<2>()) {
+    SCOPED_TRACE(kind.name);
+    through.push_back(make("kind = \"" + kind.name + "\"\n"));
+    continued.push_back(make("kind = \"" + kind.name + "\"\n"));
+    const Results before = records::results(*through.back());
+    promised.push_back(names(before));
+    EXPECT_EQ(through.back()->settings().kind, kind.name);
+    EXPECT_TRUE(before.tables.empty() && before.charts.empty()) << "nothing was measured yet";
+    for (const auto& scalar : before.scalars) EXPECT_TRUE(std::isnan(scalar.mean)) << scalar.name;
+    support::expect_error<odpd::ConfigError>(
+        [&] { make("kind = \"" + kind.name + "\"\nno_such_key = 1\n"); }, {"no_such_key"});
+  }
+  const auto all = [](const Observers& observers) {
+    std::vector<Observer<2>*> list;
+    for (const auto& observer : observers) list.push_back(observer.get());
+    return list;
+  };
+  run(101, all(through));
+  for (std::size_t k = 0; k < through.size(); ++k) {
+    support::MemoryArchive archive;
+    through[k]->save(archive);
+    continued[k]->load(archive);
+  }
+  std::vector<Observer<2>*> both = all(through);
+  for (Observer<2>* observer : all(continued)) both.push_back(observer);
+  run(200, both);
+  for (std::size_t k = 0; k < through.size(); ++k) {
+    SCOPED_TRACE(through[k]->settings().kind);
+    const Results one = records::results(*through[k]), other = records::results(*continued[k]);
+    EXPECT_EQ(names(one), promised[k]);
+    EXPECT_TRUE(std::any_of(one.scalars.begin(), one.scalars.end(),
+                            [](const auto& s) { return std::isfinite(s.mean); }) ||
+                !one.tables.empty());
+    for (std::size_t s = 0; s < one.scalars.size(); ++s) {
+      const auto &a = one.scalars[s], &b = other.scalars[s];
+      EXPECT_TRUE(a.mean == b.mean || (std::isnan(a.mean) && std::isnan(b.mean))) << a.name;
+      EXPECT_TRUE(a.standard_error == b.standard_error ||
+                  (std::isnan(a.standard_error) && std::isnan(b.standard_error)))
+          << a.name;
+      EXPECT_TRUE(a.has_error || !(a.standard_error > 0.0)) << a.name;
+    }
+    const auto row = through[k]->series_row();
+    EXPECT_EQ(row, continued[k]->series_row());
+    EXPECT_TRUE(row.empty() || row.size() == through[k]->series_columns().size());
+  }
+}
+
+/// Mean speed of the free particles times a factor: one constructor, one function.
+class MeanSpeed : public Observer<2> {
+ public:
+  MeanSpeed(odpd::ObserverSettings settings, double factor)
+      : Observer<2>(std::move(settings), {"mean", "largest"}), factor_(factor) {}
+  void measure(const odpd::Clock&, const odpd::Particles<2>& particles,
+               const odpd::StepRecord<2>& record) override {
+    double sum = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i < record.v_mid.size(); ++i) {
+      if (!particles.is_free(i)) continue;
+      sum += factor_ * norm(record.v_mid[i]);
+      largest = std::max(largest, factor_ * norm(record.v_mid[i]));
+    }
+    add({sum / static_cast<double>(particles.free_count()), largest});
+  }
+
+ private:
+  double factor_;
+};
+
+TEST_F(Registry, TakesKindsOfAUser) {
+  const std::vector<ObserverKind<2>> own{
+      {.name = "mean-speed", .make = [](const ObserverEntry<2>& entry) {
+         auto settings = entry.settings(2);
+         return std::make_unique<MeanSpeed>(settings, entry.config.positive("factor", 1.0));
+       }}};
+  const auto plain = make("kind = \"mean-speed\"\n", own);
+  const auto tenfold = make("kind = \"mean-speed\"\nname = \"u\"\nfactor = 10.0\n", own);
+  EXPECT_EQ(names(records::results(*tenfold)), (std::vector<std::string>{"u.mean", "u.largest"}));
+  run(40, {plain.get(), tenfold.get()});
+  const Results one = records::results(*plain), ten = records::results(*tenfold);
+  EXPECT_GT(records::mean(one, "mean-speed.mean"), 0.0);
+  EXPECT_NEAR(records::mean(ten, "u.mean"), 10.0 * records::mean(one, "mean-speed.mean"), 1e-10);
+  EXPECT_GT(records::error(ten, "u.largest"), 0.0);
+  EXPECT_EQ(tenfold->series_columns(), (std::vector<std::string>{"mean", "largest"}));
+  EXPECT_EQ(tenfold->series_row().size(), 2u);
+  support::MemoryArchive archive;
+  plain->save(archive);
+  const auto copy = make("kind = \"mean-speed\"\n", own);
+  copy->load(archive);
+  EXPECT_EQ(records::error(records::results(*copy), "mean-speed.mean"),
+            records::error(one, "mean-speed.mean"));
+  support::expect_error<odpd::ConfigError>([&] { make("kind = \"mean-speed\"\n"); },
+                                           {"kind", "mean-speed", "profile"});
+  support::expect_error<odpd::ConfigError>(
+      [&] {
+        make("kind = \"mean-speed\"\n", {own[0], own[0]});
+      },
+      {"already", "mean-speed"});
+}
+
+TEST(Results, ObjectToWhatNobodyMeasures) {
+  Results results;
+  results.scalars = {{"pressure"}, {"profile.slope"}, {"profile.bulk_density"}};
+  EXPECT_EQ(results.objection("profile.slope"), "");
+  const auto objects = [&](const char* name, std::initializer_list<const char*> parts) {
+    for (const char* part : parts)
+      EXPECT_NE(results.objection(name).find(part), std::string::npos) << results.objection(name);
+  };
+  objects("presure", {"'presure'", "did you mean 'pressure'", "one of pressure, profile"});
+  objects("profile.slop", {"did you mean 'profile.slope'", "profile.bulk_density"});
+  objects("wall.y-.x", {"'wall.y-.x'", "one of pressure, profile"});
+}
+
+}  // namespace
