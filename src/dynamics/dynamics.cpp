@@ -198,11 +198,13 @@ const System& Dynamics<D>::assemble(const Stage<D>& stage, const StepWeights& we
 
 /// Summed over all particles, A q = load says (inertia + zeta_0) sum q = sum load where all else is pairwise.
 template <int D>
-void Dynamics<D>::balance_momentum(const Unknowns& load, double shift, Unknowns& q) const {
-  Vec<D> excess{};
-  for (std::size_t k = 0; k < q.size(); ++k) excess.x[k % D] += load[k] / shift - q[k];
-  excess *= static_cast<double>(D) / static_cast<double>(q.size());
-  for (std::size_t k = 0; k < q.size(); ++k) q[k] += excess.x[k % D];
+void Dynamics<D>::balance_momentum(const Unknowns& load, double shift, Unknowns& q) {
+  const Translations translations = motion_.dofs().translations();
+  Unknowns difference(q.size());
+  for (std::size_t k = 0; k < q.size(); ++k) difference[k] = load[k] / shift - q[k];
+  std::vector<double> excess = translations.sums(difference);
+  for (double& component : excess) component *= 1.0 / static_cast<double>(translations.nodes);
+  translations.add(excess, q);
 }
 
 template <int D>

@@ -49,9 +49,9 @@ void Dynamics<D>::add_mean_flow(const Stage<D>& stage, Unknowns& q) {
     const std::int32_t first = motion_.dofs().constituents(b).front();
     add(first, stage.arms[static_cast<std::size_t>(first)]);
   }
-  const auto nodes = static_cast<std::size_t>(motion_.dofs().translating_nodes());
-  mean *= 1.0 / static_cast<double>(nodes);
-  for (std::size_t k = q.size() - nodes * D; k < q.size(); ++k) q[k] += mean.x[k % D];
+  const Translations translations = motion_.dofs().translations();
+  mean *= 1.0 / static_cast<double>(translations.nodes);
+  translations.add(mean.x, q);
 }
 
 #define ODPD_INSTANTIATE(D)                                          \

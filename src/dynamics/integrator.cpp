@@ -52,23 +52,25 @@ template <int D>
 std::vector<double> by_identity(Dynamics<D>& dynamics, const std::vector<double>& q) {
   const std::vector<std::size_t> place = places(dynamics);
   const auto entries = dynamics.dofs().particles() + 2 * dynamics.dofs().bodies();
-  std::vector<double> values(static_cast<std::size_t>(entries) * D, 0.0);
+  const auto block = static_cast<std::size_t>(dynamics.dofs().block_size());
+  std::vector<double> values(static_cast<std::size_t>(entries) * block, 0.0);
   for (std::size_t n = 0; n < place.size(); ++n)
-    for (std::size_t c = 0; c < D; ++c) values[place[n] * D + c] = q[n * D + c];
+    for (std::size_t c = 0; c < block; ++c) values[place[n] * block + c] = q[n * block + c];
   return values;
 }
 
 template <int D>
 std::vector<double> from_identity(Dynamics<D>& dynamics, const std::vector<double>& values) {
   const auto entries = dynamics.dofs().particles() + 2 * dynamics.dofs().bodies();
-  if (values.size() != static_cast<std::size_t>(entries) * D)
+  const auto block = static_cast<std::size_t>(dynamics.dofs().block_size());
+  if (values.size() != static_cast<std::size_t>(entries) * block)
     throw IoError(
         "the checkpoint's integrator arrays do not fit the particles: it is damaged or of another "
         "case");
   const std::vector<std::size_t> place = places(dynamics);
-  std::vector<double> q(place.size() * D);
+  std::vector<double> q(place.size() * block);
   for (std::size_t n = 0; n < place.size(); ++n)
-    for (std::size_t c = 0; c < D; ++c) q[n * D + c] = values[place[n] * D + c];
+    for (std::size_t c = 0; c < block; ++c) q[n * block + c] = values[place[n] * block + c];
   return q;
 }
 

@@ -1,8 +1,15 @@
 #include "odpd/operator/dof_map.h"
 
-#include "odpd/core/parallel.h"
-
 namespace odpd {
+
+namespace {
+
+template <int D>
+std::span<const double> flat(std::span<const Vec<D>> v) {
+  return {v.empty() ? nullptr : v.front().x.data(), v.size() * D};
+}
+
+}  // namespace
 
 template <int D>
 DofMap<D>::DofMap(const Particles<D>& particles) {
@@ -15,25 +22,19 @@ DofMap<D>::DofMap(const Particles<D>& particles) {
     for (const std::int64_t id : body.members)
       body_.back().push_back(index[static_cast<std::size_t>(id)]);
   }
-  site_.assign(n, -1);
-  std::int32_t sites = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (particles.is_known(i)) continue;
-    site_[i] = sites++;
-    if (particles.is_free(i)) free_.push_back(static_cast<std::int32_t>(i));
-    if (unknown_ > 0) moves_.push_back(static_cast<std::int32_t>(i));
-  }
+  std::vector<char> without(n);
+  for (std::size_t i = 0; i < n; ++i) without[i] = particles.is_free(i) ? 0 : 1;
+  free_ = NodeMap(without, block_size());
+  if (unknown_ == 0) return;
+  for (std::size_t i = 0; i < n; ++i) without[i] = particles.is_known(i) ? 1 : 0;
+  sites_ = NodeMap(without, block_size());
 }
 
 template <int D>
 void DofMap<D>::gather(std::span<const Vec<D>> arms, std::span<const Vec<D>> forces,
                        std::vector<double>& q) const {
   q.resize(static_cast<std::size_t>(unknowns()));
-  parallel_for(static_cast<std::int64_t>(free_.size()), [&](std::int64_t node) {
-    const auto n = static_cast<std::size_t>(node);
-    for (std::size_t c = 0; c < D; ++c)
-      q[free_node(n) * D + c] = forces[static_cast<std::size_t>(free_[n])].x[c];
-  });
+  free_.gather(flat(forces), std::span(q).subspan(free_node(0) * D));
   for (std::size_t b = 0; b < unknown_; ++b) {
     Vec<D> force{}, moment{};
     for (const std::int32_t particle : body_[b]) {
@@ -52,11 +53,8 @@ template <int D>
 void DofMap<D>::scatter(std::span<const Vec<D>> arms, std::span<const double> q,
                         std::span<const Vec<D>> known, std::vector<Vec<D>>& velocity) const {
   velocity.assign(known.begin(), known.end());
-  parallel_for(static_cast<std::int64_t>(free_.size()), [&](std::int64_t node) {
-    const auto n = static_cast<std::size_t>(node);
-    for (std::size_t c = 0; c < D; ++c)
-      velocity[static_cast<std::size_t>(free_[n])].x[c] = q[free_node(n) * D + c];
-  });
+  if (!velocity.empty())
+    free_.scatter(q.subspan(free_node(0) * D), {velocity.front().x.data(), velocity.size() * D});
   for (std::size_t b = 0; b < unknown_; ++b) {
     Vec<D> v, w;
     for (std::size_t c = 0; c < D; ++c) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "odpd/core/error.h"
@@ -12,8 +11,6 @@
 namespace odpd {
 
 namespace {
-
-constexpr std::int64_t nodes_per_sum = 1024;
 
 std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
@@ -40,39 +37,21 @@ void validate(const BlockCsr& a) {
 
 }  // namespace
 
-void System::project(std::span<double> x) const {
-  if (projected())
-    remove_mean(x.last(static_cast<std::size_t>(translating_nodes() * block_size())), block_size());
-}
-
-void remove_mean(std::span<double> x, int block) {
-  const std::size_t b = index(block);
-  const std::int64_t nodes = static_cast<std::int64_t>(x.size() / b);
-  if (nodes == 0) return;
-  // Sums in fixed blocks of nodes, whatever the threads, as fixed_sum does.
-  const std::int64_t sums = (nodes + nodes_per_sum - 1) / nodes_per_sum;
-  std::vector<double> partial(index(sums) * b, 0.0);
-  parallel_for(sums, [&](std::int64_t s) {
-    double* const sum = &partial[index(s) * b];
-    const std::int64_t end = std::min(nodes, (s + 1) * nodes_per_sum);
-    for (std::int64_t i = s * nodes_per_sum; i < end; ++i) {
-      for (std::size_t k = 0; k < b; ++k) sum[k] += x[index(i) * b + k];
-    }
-  });
-  std::vector<double> mean(b, 0.0);
-  for (std::size_t s = 0; s < index(sums); ++s) {
-    for (std::size_t k = 0; k < b; ++k) mean[k] += partial[s * b + k];
-  }
-  for (double& m : mean) m /= static_cast<double>(nodes);
-  parallel_for(nodes, [&](std::int64_t i) {
-    for (std::size_t k = 0; k < b; ++k) x[index(i) * b + k] -= mean[k];
-  });
-}
-
 AssembledSystem::AssembledSystem(BlockCsr matrix, bool translations_are_null,
                                  bool holds_centre_of_mass)
     : matrix_(std::move(matrix)), null_(translations_are_null), held_(holds_centre_of_mass) {
   validate(matrix_);
+  translations_ = {matrix_.block, matrix_.rows, matrix_.block};
+}
+
+AssembledSystem::AssembledSystem(BlockCsr matrix, Translations translations,
+                                 bool translations_are_null, bool holds_centre_of_mass)
+    : AssembledSystem(std::move(matrix), translations_are_null, holds_centre_of_mass) {
+  translations_ = translations;
+  require(translations.block == matrix_.block && translations.nodes >= 0 &&
+              translations.nodes <= matrix_.rows && translations.components > 0 &&
+              translations.components <= matrix_.block,
+          "translations must move some of its unknowns");
 }
 
 void AssembledSystem::apply(std::span<const double> x, std::span<double> y) const {

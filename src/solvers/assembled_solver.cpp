@@ -8,19 +8,6 @@
 
 namespace odpd {
 
-namespace {
-
-/// E^T x: the sum of each component.
-std::vector<double> component_sums(std::span<const double> x, std::size_t block) {
-  std::vector<double> sum(block, 0.0);
-  for (std::size_t i = 0; i < x.size(); i += block) {
-    for (std::size_t k = 0; k < block; ++k) sum[k] += x[i + k];
-  }
-  return sum;
-}
-
-}  // namespace
-
 void AssembledSolver::set_up() {
   response_.clear();
   require_definite_diagonal(*system_);
@@ -32,26 +19,27 @@ void AssembledSolver::set_up() {
 
 /// Solves A Z = E and inverts E^T Z.
 Solver::Attempt AssembledSolver::find_response(double tolerance) {
-  const std::size_t block = index(system_->block_size());
+  const Translations translations = system_->translations();
+  const std::size_t count = index(translations.components);
   const std::size_t size = index(system_->size());
   std::vector<std::vector<double>> response;
-  inverse_schur_.assign(block * block, 0.0);
+  inverse_schur_.assign(count * count, 0.0);
   Attempt total;
   const std::int64_t budget = iterations_left_;
-  for (std::size_t k = 0; k < block; ++k) {
-    std::vector<double> translation(size, 0.0);
-    for (std::size_t i = k; i < size; i += block) translation[i] = 1.0;
-    std::vector<double> z(size, 0.0);
+  for (std::size_t k = 0; k < count; ++k) {
+    std::vector<double> unit(count, 0.0), translation(size, 0.0), z(size, 0.0);
+    unit[k] = 1.0;
+    translations.add(unit, translation);
     const Attempt one = attempt_free(translation, z, std::max(0.1 * tolerance, 1e-14));
     total.iterations += one.iterations;
     total.failure = one.failure;
     if (!one.ok) return total;
     iterations_left_ = budget - total.iterations;
-    const std::vector<double> sum = component_sums(z, block);
-    for (std::size_t i = 0; i < block; ++i) inverse_schur_[i * block + k] = sum[i];
+    const std::vector<double> sum = translations.sums(z);
+    for (std::size_t i = 0; i < count; ++i) inverse_schur_[i * count + k] = sum[i];
     response.push_back(std::move(z));
   }
-  if (!invert_definite(inverse_schur_, system_->block_size())) {
+  if (!invert_definite(inverse_schur_, translations.components)) {
     total.failure = not_definite;
     return total;
   }
@@ -62,11 +50,11 @@ Solver::Attempt AssembledSolver::find_response(double tolerance) {
 
 /// x -= Z (E^T Z)^-1 E^T x.
 void AssembledSolver::hold_centre(std::span<double> x) const {
-  const std::size_t block = index(system_->block_size());
-  const std::vector<double> sum = component_sums(x, block);
-  for (std::size_t k = 0; k < block; ++k) {
+  const std::vector<double> sum = system_->translations().sums(x);
+  for (std::size_t k = 0; k < sum.size(); ++k) {
     double force = 0.0;
-    for (std::size_t j = 0; j < block; ++j) force += inverse_schur_[k * block + j] * sum[j];
+    for (std::size_t j = 0; j < sum.size(); ++j)
+      force += inverse_schur_[k * sum.size() + j] * sum[j];
     const std::vector<double>& z = response_[k];
     for (std::size_t i = 0; i < x.size(); ++i) x[i] -= force * z[i];
   }

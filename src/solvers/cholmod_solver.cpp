@@ -1,5 +1,5 @@
-// SuiteSparse sparse Cholesky of the assembled matrix. Where translations are null the last node is
-// grounded (its rows and columns dropped); the mean is restored after the solve.
+// SuiteSparse sparse Cholesky of the assembled matrix. Where translations are null, what they move of the last node is
+// grounded (its rows and columns, the last of all, dropped); the mean is restored after the solve.
 #include <cblas.h>
 #include <cholmod.h>
 #include <fmt/format.h>
@@ -55,42 +55,42 @@ class Cholesky : public AssembledSolver {
   }
 
   Workspace work_;
-  std::int32_t nodes_ = 0;  // that are not grounded
-  std::string failure_;     // of the factorisation; empty when there is a factor
+  std::int64_t size_ = 0;  // unknowns that are not grounded: the first ones
+  std::string failure_;    // of the factorisation; empty when there is a factor
 };
 
 /// The lower triangle by columns, which is the upper one by rows.
 void Cholesky::copy(const BlockCsr& a) {
   const std::int64_t b = a.block;
-  std::int64_t entries = 0;
-  for (std::int32_t row = 0; row < nodes_; ++row) {
-    for (std::int32_t k = a.start[index(row)]; k < a.start[index(row) + 1]; ++k) {
-      const std::int32_t column = a.column[index(k)];
-      if (column < nodes_ && column >= row) entries += column == row ? b * (b + 1) / 2 : b * b;
+  // visit(k, i, first, last): of block k, row i of it, the entries [first, last) that are kept.
+  const auto for_each_part = [&](const auto& begin_row, const auto& visit) {
+    for (std::int64_t unknown = 0; unknown < size_; ++unknown) {
+      const std::int64_t row = unknown / b, i = unknown % b;
+      begin_row(unknown);
+      for (std::int32_t k = a.start[index(row)]; k < a.start[index(row) + 1]; ++k) {
+        const std::int64_t column = a.column[index(k)];
+        if (column >= row) visit(k, i, column == row ? i : 0, std::min(b, size_ - column * b));
+      }
     }
-  }
-  const std::size_t size = index(nodes_ * b);
-  work_.matrix = cholmod_l_allocate_sparse(size, size, index(entries), true, true, -1, CHOLMOD_REAL,
-                                           &work_.common);
+  };
+  std::int64_t entries = 0;
+  for_each_part([](std::int64_t) {}, [&](std::int32_t, std::int64_t, std::int64_t first,
+                                         std::int64_t last) { entries += last - first; });
+  work_.matrix = cholmod_l_allocate_sparse(index(size_), index(size_), index(entries), true, true,
+                                           -1, CHOLMOD_REAL, &work_.common);
   if (work_.matrix == nullptr) return;
   auto* const start = static_cast<SuiteSparse_long*>(work_.matrix->p);
   auto* const place = static_cast<SuiteSparse_long*>(work_.matrix->i);
   auto* const value = static_cast<double*>(work_.matrix->x);
   std::size_t at = 0;
-  for (std::int32_t row = 0; row < nodes_; ++row) {
-    for (std::int64_t i = 0; i < b; ++i) {
-      start[row * b + i] = static_cast<SuiteSparse_long>(at);
-      for (std::int32_t k = a.start[index(row)]; k < a.start[index(row) + 1]; ++k) {
-        const std::int32_t column = a.column[index(k)];
-        if (column < row || column >= nodes_) continue;
-        for (std::int64_t j = column == row ? i : 0; j < b; ++j, ++at) {
-          place[at] = column * b + j;
-          value[at] = a.value[index(k * b * b + i * b + j)];
-        }
-      }
-    }
-  }
-  start[nodes_ * b] = static_cast<SuiteSparse_long>(at);
+  for_each_part([&](std::int64_t unknown) { start[unknown] = static_cast<SuiteSparse_long>(at); },
+                [&](std::int32_t k, std::int64_t i, std::int64_t first, std::int64_t last) {
+                  for (std::int64_t j = first; j < last; ++j, ++at) {
+                    place[at] = a.column[index(k)] * b + j;
+                    value[at] = a.value[index(k * b * b + i * b + j)];
+                  }
+                });
+  start[size_] = static_cast<SuiteSparse_long>(at);
 }
 
 void Cholesky::factorise() {
@@ -111,8 +111,9 @@ void Cholesky::set_up_matrix(const BlockCsr& a) {
   openblas_set_num_threads(1);  // the same bits whatever the machine, and no threads inside threads
   work_.clear();
   failure_.clear();
-  nodes_ = system_->translations_are_null() ? a.rows - 1 : a.rows;
-  if (nodes_ <= 0) return;  // a single free node does not move
+  size_ = system_->size();
+  if (system_->translations_are_null()) size_ -= system_->translations().components;
+  if (size_ <= 0) return;  // a single free node does not move
   const Stopwatch watch;
   copy(a);
   assembly_seconds_ += watch.seconds();
@@ -131,7 +132,7 @@ Solver::Attempt Cholesky::attempt_free(std::span<const double> b, std::span<doub
   if (!failure_.empty()) return result;
   result.iterations = 1;
   std::fill(x.begin(), x.end(), 0.0);
-  if (nodes_ > 0) {
+  if (size_ > 0) {
     const std::size_t size = work_.factor->n;
     cholmod_dense* load = cholmod_l_allocate_dense(size, 1, size, CHOLMOD_REAL, &work_.common);
     if (load != nullptr) std::copy_n(b.data(), size, static_cast<double*>(load->x));

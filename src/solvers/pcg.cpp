@@ -1,6 +1,7 @@
-// Preconditioned conjugate gradients. On a Resistance the work is done in single precision (mixed_cg.cpp); on any other
-// System, and where single precision does not do, in double, on System::apply. On a projected system everything lives in the range of Pi: the operator is
-// Pi A Pi, the preconditioner Pi M^-1 Pi.
+// Preconditioned conjugate gradients. On a Resistance, D velocities per particle, the work is done in single precision
+// (mixed_cg.cpp); on any other System, whatever its block, and where single precision does not do, in double, on
+// System::apply. On a projected system everything lives in the range of Pi: the operator is Pi A Pi, the preconditioner
+// Pi M^-1 Pi.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -15,6 +16,10 @@
 namespace odpd {
 
 namespace {
+
+constexpr const char* no_grid =
+    "preconditioner multilevel is for particles whose velocities are all unknowns there are: "
+    "block-Jacobi in double precision instead";
 
 class DoubleCg : public CgEngine {
  public:
@@ -126,6 +131,7 @@ class ConjugateGradients : public Solver {
     note_.clear();
     in_double_ = mixed_ == nullptr;
     if (in_double_) {
+      if (options_.preconditioner == "multilevel") note_ = no_grid;
       double_.set_up(*system_);
     } else {
       mixed_->set_up(*system_);

@@ -150,28 +150,29 @@ void fill(const BlockCsr& a, Mat matrix) {
 
 /// The normalised translations.
 MatNullSpace translations(const System& system) {
-  const PetscInt size = static_cast<PetscInt>(system.size());
-  const PetscInt block = system.block_size();
-  std::vector<::Vec> modes(index(block));
-  for (PetscInt k = 0; k < block; ++k) {
-    ::Vec& mode = modes[index(k)];
-    check(VecCreateSeq(PETSC_COMM_SELF, size, &mode));
-    check(VecSetBlockSize(mode, block));
+  const Translations t = system.translations();
+  const double one = 1.0 / std::sqrt(static_cast<double>(t.nodes));
+  std::vector<::Vec> modes(index(t.components));
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    ::Vec& mode = modes[k];
+    check(VecCreateSeq(PETSC_COMM_SELF, static_cast<PetscInt>(system.size()), &mode));
+    check(VecSetBlockSize(mode, t.block));
     check(VecSet(mode, 0.0));
-    const double one = 1.0 / std::sqrt(static_cast<double>(system.translating_nodes()));
-    check(VecStrideSet(mode, k, one));
-    for (auto n = static_cast<PetscInt>(system.nodes() - system.translating_nodes()); n-- > 0;)
-      check(VecSetValue(mode, n * block + k, 0.0, INSERT_VALUES));
-    check(VecAssemblyBegin(mode));
-    check(VecAssemblyEnd(mode));
+    PetscScalar* entries = nullptr;
+    check(VecGetArray(mode, &entries));
+    std::vector<double> unit(modes.size(), 0.0);
+    unit[k] = one;
+    t.add(unit, {entries, index(system.size())});
+    check(VecRestoreArray(mode, &entries));
   }
   MatNullSpace space = nullptr;
-  check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE, block, modes.data(), &space));
+  check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE, t.components, modes.data(), &space));
   for (::Vec& mode : modes) check(VecDestroy(&mode));
   return space;
 }
 
-/// What the coarse levels of a multigrid must hold: the rigid motions that the box allows.
+/// What the coarse levels of a multigrid must hold: the rigid motions that the box allows. Rotations are left out where the
+/// unknowns are not velocities alone.
 MatNullSpace near_null_space(const System& system) {
   const std::span<const double> positions = system.positions();
   const bool rotates = !positions.empty() && system.periodic_directions() == 0 &&

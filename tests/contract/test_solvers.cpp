@@ -112,7 +112,7 @@ template <int D>
 void expect_zero_mean(const Instant<D>& instant, const std::vector<double>& x) {
   if (!instant.system->projected()) return;
   std::vector<double> centred = x;
-  odpd::remove_mean(centred, D);
+  instant.system->project(centred);
   EXPECT_LT(distance(centred, x), 1e-13) << "the centre of mass must stay";
 }
 
@@ -201,7 +201,7 @@ double next_increment(const odpd::System& system, const std::vector<double>& b,
                       const std::vector<double>& x) {
   std::vector<double> r = contract::product(system, x), step(x.size());
   for (std::size_t k = 0; k < r.size(); ++k) r[k] = b[k] - r[k];
-  if (system.projected()) odpd::remove_mean(r, system.block_size());
+  system.project(r);
   odpd::BlockJacobi inverse_diagonal;
   inverse_diagonal.set_up(system);
   inverse_diagonal.apply(r, step);

@@ -65,4 +65,36 @@ TYPED_TEST(DofMapTest, GatherIsTheTransposeOfScatter) {
   EXPECT_NEAR(left, right, 1e-13);
 }
 
+// A field of one number per particle decides for itself who is known: here a wall particle without a temperature of its own
+// and a fluid particle with one.
+TEST(NodeMap, KnownIsWhatTheFieldSays) {
+  const odpd::NodeMap map(std::vector<char>{0, 1, 1, 0, 0}, 1);
+  EXPECT_EQ(map.block_size(), 1);
+  EXPECT_EQ(map.unknowns(), 3);
+  EXPECT_EQ(map.particles(), 5);
+  const std::vector<std::int32_t> node{0, -1, -1, 1, 2}, particle{0, 3, 4};
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(map.node_of(i), node[i]);
+  for (std::size_t n = 0; n < 3; ++n) EXPECT_EQ(map.particle_of(n), particle[n]);
+}
+
+TEST(NodeMap, GatherIsTheTransposeOfScatter) {
+  for (const int block : {1, 3, 6}) {
+    const auto b = static_cast<std::size_t>(block);
+    const odpd::NodeMap map(std::vector<char>{1, 0, 0, 1, 0}, block);
+    const auto values = support::random_numbers(5 * b, 1), q = support::random_numbers(3 * b, 2);
+    std::vector<double> gathered(3 * b), scattered(5 * b, 0.0);
+    map.gather(values, gathered);
+    map.scatter(q, scattered);
+    double left = 0.0, right = 0.0;
+    for (std::size_t k = 0; k < gathered.size(); ++k) left += gathered[k] * q[k];
+    for (std::size_t k = 0; k < values.size(); ++k) right += values[k] * scattered[k];
+    EXPECT_NEAR(left, right, 1e-13);
+    for (std::size_t c = 0; c < b; ++c) {
+      EXPECT_EQ(gathered[b + c], values[2 * b + c]);
+      EXPECT_EQ(scattered[4 * b + c], q[2 * b + c]);
+      EXPECT_EQ(scattered[3 * b + c], 0.0) << "known ones keep theirs";
+    }
+  }
+}
+
 }  // namespace

@@ -1,9 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "odpd/core/error.h"
-#include "odpd/core/parallel.h"
 #include "odpd/operator/system.h"
 
 namespace {
@@ -58,43 +55,6 @@ TEST(AssembledSystem, RefusesAMatrixThatIsNone) {
   a = small();
   a.start = {0, 4};
   EXPECT_THROW(odpd::AssembledSystem{a}, odpd::SolverError);
-}
-
-TEST(RemoveMean, RemovesTheMeanOfEachComponent) {
-  for (int block : {1, 2, 3, 6}) {
-    const std::size_t b = static_cast<std::size_t>(block);
-    std::vector<double> x(5000 * b);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      x[i] = std::sin(static_cast<double>(i * i % 977)) + static_cast<double>(i % b);
-    }
-    const std::vector<double> before(x);
-    odpd::remove_mean(x, block);
-    for (std::size_t k = 0; k < b; ++k) {
-      double sum = 0.0;
-      for (std::size_t i = k; i < x.size(); i += b) sum += x[i];
-      EXPECT_NEAR(sum, 0.0, 1e-9);
-      EXPECT_NEAR(before[k] - x[k], before[k + 7 * b] - x[k + 7 * b], 1e-14) << "a shift only";
-      EXPECT_GT(std::abs(before[k] - x[k]), 1e-6);
-    }
-  }
-}
-
-TEST(RemoveMean, HasTheSameBitsOnAnyThreadCount) {
-  std::vector<double> one(3 * 700000);
-  for (std::size_t i = 0; i < one.size(); ++i) one[i] = std::sin(static_cast<double>(i));
-  std::vector<double> two(one);
-  odpd::set_threads(1, 0);
-  odpd::remove_mean(one, 3);
-  odpd::set_threads(2, 0);
-  odpd::remove_mean(two, 3);
-  odpd::set_threads(1, 0);
-  EXPECT_EQ(one, two);
-}
-
-TEST(RemoveMean, TakesAnEmptyVector) {
-  std::vector<double> none;
-  odpd::remove_mean(none, 3);
-  EXPECT_TRUE(none.empty());
 }
 
 }  // namespace

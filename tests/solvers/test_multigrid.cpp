@@ -283,7 +283,8 @@ double inner(const std::vector<float>& a, const std::vector<float>& b) {
 
 std::vector<float> random_floats(std::size_t count, std::uint64_t seed, std::size_t components) {
   std::vector<double> x = support::random_numbers(count, seed);
-  odpd::remove_mean(x, static_cast<int>(components));
+  const auto block = static_cast<int>(components);
+  odpd::Translations{block, static_cast<std::int64_t>(count / components), block}.remove_mean(x);
   return {x.begin(), x.end()};
 }
 

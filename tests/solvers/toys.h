@@ -161,10 +161,8 @@ inline double true_residual(const odpd::System& system, std::vector<double> b,
   std::vector<double> r(x.size());
   system.apply(x, r);
   for (std::size_t i = 0; i < r.size(); ++i) r[i] = b[i] - r[i];
-  if (system.projected()) {
-    odpd::remove_mean(r, system.block_size());
-    odpd::remove_mean(b, system.block_size());
-  }
+  system.project(r);
+  system.project(b);
   return norm(r) / norm(b);
 }
 

@@ -124,7 +124,7 @@ class Dynamics {
   Unknowns without_sliding_springs(const Stage<D>& stage, const StepWeights& weights,
                                    Unknowns load);
   void add_mean_flow(const Stage<D>& stage, Unknowns& q);
-  void balance_momentum(const Unknowns& load, double shift, Unknowns& q) const;
+  void balance_momentum(const Unknowns& load, double shift, Unknowns& q);
   void note(const SolveReport& report);
 
   const Box<D> box_;

@@ -60,7 +60,7 @@ class Integrator {
   StepRecord<D> record_;
 };
 
-/// Unknowns in the order of the persistent identities, D numbers per particle (zero where it has none of its own), then
+/// Unknowns in the order of the persistent identities, a block per particle (zero where it has none of its own), then
 /// those of the bodies, and back: carried arrays so survive a reordering of memory.
 template <int D>
 std::vector<double> by_identity(Dynamics<D>& dynamics, const std::vector<double>& q);

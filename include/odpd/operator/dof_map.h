@@ -6,12 +6,15 @@
 //   v_k = V + X(a_k) w,   X(a) w = w x a,   a_k the arm of constituent k
 //
 // *Nodes* are the groups of D unknowns that solvers see: w of each body (in 2D with one unused component), then the free
-// particles in memory order, then V of each body. *Sites* are the particles that move: free ones and constituents, in memory order.
+// particles in memory order, then V of each body. A translation moves all but the first of these. *Sites* are the particles
+// that move: free ones and constituents, in memory order.
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "odpd/core/vec.h"
+#include "odpd/operator/node_map.h"
+#include "odpd/operator/translations.h"
 #include "odpd/particles/particles.h"
 
 namespace odpd {
@@ -21,27 +24,27 @@ class DofMap {
  public:
   explicit DofMap(const Particles<D>& particles);
 
-  std::int64_t nodes() const { return translating_nodes() + bodies(); }
-  /// Those behind the angular velocities.
-  std::int64_t translating_nodes() const {
-    return static_cast<std::int64_t>(free_.size()) + bodies();
-  }
-  std::int64_t unknowns() const { return nodes() * D; }
-  std::int64_t particles() const { return static_cast<std::int64_t>(site_.size()); }
+  int block_size() const { return D; }
+  std::int64_t nodes() const { return free_.nodes() + 2 * bodies(); }
+  std::int64_t unknowns() const { return nodes() * block_size(); }
+  Translations translations() const { return {block_size(), free_.nodes() + bodies(), D}; }
+  std::int64_t particles() const { return free_.particles(); }
   /// Rigid bodies whose motion is unknown: the first of them all.
   std::int64_t bodies() const { return static_cast<std::int64_t>(unknown_); }
 
-  std::int64_t sites() const { return static_cast<std::int64_t>(site_particles().size()); }
+  std::int64_t sites() const { return site_map().nodes(); }
   /// Site of a particle, -1 when its velocity is known.
-  std::int32_t site_of(std::size_t particle) const { return site_[particle]; }
-  std::int32_t particle_of(std::size_t site) const { return site_particles()[site]; }
+  std::int32_t site_of(std::size_t particle) const { return site_map().node_of(particle); }
+  std::int32_t particle_of(std::size_t site) const { return site_map().particle_of(site); }
   /// Particles of the free nodes, ascending; free_particles()[k] is node free_node(k).
-  std::span<const std::int32_t> free_particles() const { return free_; }
+  std::span<const std::int32_t> free_particles() const { return free_.node_particles(); }
   std::size_t free_node(std::size_t k) const { return unknown_ + k; }
   /// Constituents of body b, of known motion or not, as places in memory.
   std::span<const std::int32_t> constituents(std::size_t b) const { return body_[b]; }
   /// Node of V of body b; that of its w is b.
-  std::size_t body_node(std::size_t b) const { return unknown_ + free_.size() + b; }
+  std::size_t body_node(std::size_t b) const {
+    return unknown_ + static_cast<std::size_t>(free_.nodes()) + b;
+  }
 
   // `arms`: one per particle, zero but for constituents; empty where there are no bodies.
 
@@ -55,11 +58,10 @@ class DofMap {
   void divide_by_inertia(std::span<const Vec<D>> arms, std::vector<double>& l) const;
 
  private:
-  const std::vector<std::int32_t>& site_particles() const { return unknown_ == 0 ? free_ : moves_; }
+  const NodeMap& site_map() const { return unknown_ == 0 ? free_ : sites_; }
 
-  std::vector<std::int32_t> site_;
-  std::vector<std::int32_t> free_;
-  std::vector<std::int32_t> moves_;  // particles of the sites; empty without bodies
+  NodeMap free_;
+  NodeMap sites_;  // empty without bodies of unknown motion: the same as free_
   std::vector<std::vector<std::int32_t>> body_;
   std::size_t unknown_ = 0;  // bodies
 };

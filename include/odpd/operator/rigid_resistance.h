@@ -32,7 +32,7 @@ class RigidResistance : public System {
 
   int block_size() const override { return D; }
   std::int64_t nodes() const override { return dofs_->nodes(); }
-  std::int64_t translating_nodes() const override { return dofs_->translating_nodes(); }
+  Translations translations() const override { return dofs_->translations(); }
   void apply(std::span<const double> x, std::span<double> y) const override;
   void block_diagonal(std::span<double> blocks) const override;
   const BlockCsr& matrix() const override;

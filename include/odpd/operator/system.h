@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "odpd/operator/block_csr.h"
+#include "odpd/operator/translations.h"
 
 namespace odpd {
 
@@ -19,11 +20,11 @@ class System {
  public:
   virtual ~System() = default;
 
-  virtual int block_size() const = 0;      ///< unknowns per node
+  virtual int block_size() const = 0;      ///< unknowns per node; not the dimension of space
   virtual std::int64_t nodes() const = 0;  ///< number of nodes
   std::int64_t size() const { return nodes() * block_size(); }
-  /// The last of them, which a translation moves; those before are angular velocities of rigid bodies.
-  virtual std::int64_t translating_nodes() const { return nodes(); }
+  /// Which unknowns a translation moves. Here: all.
+  virtual Translations translations() const { return {block_size(), nodes(), block_size()}; }
 
   /// y = A x; the same bits on any thread count. Sizes: size().
   virtual void apply(std::span<const double> x, std::span<double> y) const = 0;
@@ -32,8 +33,8 @@ class System {
   /// A assembled, made on first demand and kept until the generation changes.
   virtual const BlockCsr& matrix() const = 0;
 
-  /// Positions of the nodes (nodes * space_dimension(), may be empty) and how many directions are periodic:
-  /// with these a solver builds the near-null space (translations; rotations only when none is periodic).
+  /// Positions of the nodes (nodes * space_dimension(), may be empty) and how many directions are periodic: with these a
+  /// solver builds the near-null space (translations; rotations where none is periodic and velocities are all unknowns).
   virtual std::span<const double> positions() const = 0;
   virtual int space_dimension() const = 0;
   virtual int periodic_directions() const = 0;
@@ -44,34 +45,38 @@ class System {
   virtual bool holds_centre_of_mass() const = 0;
   bool projected() const { return translations_are_null() || holds_centre_of_mass(); }
   /// x := Pi x; nothing where the problem is regular.
-  void project(std::span<double> x) const;
+  void project(std::span<double> x) const {
+    if (projected()) translations().remove_mean(x);
+  }
 
   /// Changes whenever A changes.
   virtual std::uint64_t generation() const = 0;
 };
-
-/// Removes the mean of each of the `block` components: x := Pi x. Fixed summation order.
-void remove_mean(std::span<double> x, int block);
 
 /// A System around an assembled matrix: toys in tests, matrices from elsewhere.
 class AssembledSystem : public System {
  public:
   explicit AssembledSystem(BlockCsr matrix, bool translations_are_null = false,
                            bool holds_centre_of_mass = false);
+  /// The same where translations move not all of the unknowns.
+  AssembledSystem(BlockCsr matrix, Translations translations, bool translations_are_null,
+                  bool holds_centre_of_mass);
   int block_size() const override { return matrix_.block; }
   std::int64_t nodes() const override { return matrix_.rows; }
   void apply(std::span<const double> x, std::span<double> y) const override;
   void block_diagonal(std::span<double> blocks) const override;
   const BlockCsr& matrix() const override { return matrix_; }
   std::span<const double> positions() const override { return {}; }
-  int space_dimension() const override { return matrix_.block; }
-  int periodic_directions() const override { return matrix_.block; }
+  Translations translations() const override { return translations_; }
+  int space_dimension() const override { return translations_.components; }
+  int periodic_directions() const override { return translations_.components; }
   bool translations_are_null() const override { return null_; }
   bool holds_centre_of_mass() const override { return held_; }
   std::uint64_t generation() const override { return 1; }
 
  private:
   BlockCsr matrix_;
+  Translations translations_;
   bool null_;
   bool held_;
 };

@@ -1,6 +1,6 @@
 #pragma once
 // Backends that work on the assembled matrix and know nothing of a held centre of mass. The
-// constraint is met by the Schur complement, with E the translations:
+// constraint is met by the Schur complement, with E the translations that the system names:
 //
 //   Pi A x = Pi b, E^T x = 0   <=>   x = y - Z (E^T Z)^-1 E^T y,   A y = b,   A Z = E
 #include <cstdint>

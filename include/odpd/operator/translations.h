@@ -1,0 +1,36 @@
+#pragma once
+// The translations E of a vector of unknowns, `block` numbers per node: column c moves component c of every velocity by 1.
+//
+//   sums(x) = E^T x,   add(a, x): x := x + E a,   remove_mean(x): x := x - E (E^T E)^-1 E^T x
+//
+// Unknowns that a translation leaves alone stand in front: whole nodes (angular velocities of rigid bodies) and the first
+// components of a node (spins). A scalar field has block = components = 1, and its translation is the constant.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace odpd {
+
+struct Translations {
+  int block = 1;           ///< unknowns per node
+  std::int64_t nodes = 0;  ///< the last ones of the vector
+  int components = 1;      ///< the last ones of a node
+
+  /// First of the translated unknowns of node n of these, in the part of `x` that belongs to them.
+  std::size_t first(std::int64_t n) const {
+    return static_cast<std::size_t>(n * block + block - components);
+  }
+  /// Node by node, in order.
+  std::vector<double> sums(std::span<const double> x) const;
+  /// a: `components` numbers.
+  void add(std::span<const double> a, std::span<double> x) const;
+  /// The same bits on any thread count.
+  void remove_mean(std::span<double> x) const;
+
+ private:
+  std::size_t in_front(std::size_t size) const {
+    return size - static_cast<std::size_t>(nodes * block);
+  }
+};
+
+}  // namespace odpd
