@@ -80,7 +80,7 @@ void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepR
       static_cast<double>(std::count_if(particles.bodies.begin(), particles.bodies.end(),
                                         [](const RigidBody<D>& body) { return !body.known; }));
   const double volume = scene_.fluid_volume();
-  this->add({(network.u.sum() + wall_energy) / n,
+  this->add({(network.energy() + wall_energy) / n,
              ((n + bodies) * scene_.largest_kT() + fixed_sum(virial) / D) / volume,
              fixed_sum(force_squared), fixed_sum(laplacian),
              kinetic_temperature(scene_, particles, peculiar(record.start, record.v_start))});

@@ -162,7 +162,7 @@ std::string BlowUpWatch<D>::judge(const Stage<D>& stage, double dt) {
   std::vector<double> force_squared, laplacian;
   double wall_energy = 0.0;
   configurational_terms(scene_, scene_.particles(), stage, force_squared, laplacian, wall_energy);
-  const double energy = (stage.network.u.sum() + wall_energy) / n;
+  const double energy = (stage.network.energy() + wall_energy) / n;
   if (!std::isfinite(energy)) return "the energy is not finite";
   if (start_energy_ < 0.0) {
     start_energy_ = energy;

@@ -161,11 +161,32 @@ void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian
                                       : 0.0;
   };
   add_edges(network, false, share, laplacian);
+  add_density_curvature(network, laplacian);
   if (network.beyond.empty()) return;
   const auto first_bond = static_cast<std::size_t>(network.pairs());
   add_bonds(
       network, false, [&](std::size_t k) { return network.beyond[k - first_bond].curvature; },
       laplacian);
+}
+
+template <int D>
+void add_density_curvature(const PairNetwork<D>& network, std::vector<double>& laplacian) {
+  const DensityColumns& columns = network.densities;
+  if (columns.empty()) return;
+  parallel_for(network.particles, [&](std::int64_t particle) {
+    const auto p = static_cast<std::size_t>(particle);
+    double sum = 0.0;
+    Vec<D> gradient{};
+    for (const std::int32_t edge : network.edges_of(particle)) {
+      if (edge >= network.pairs()) break;  // bonds are the last
+      const auto k = static_cast<std::size_t>(edge);
+      const bool first = network.i[k] == particle;
+      const auto q = static_cast<std::size_t>(first ? network.j[k] : network.i[k]);
+      sum += columns.psi_2[q] * columns.W_1[k] * columns.W_1[k];
+      gradient += (first ? columns.W_1[k] : -columns.W_1[k]) * network.e[k];
+    }
+    laplacian[p] += sum + columns.psi_2[p] * dot(gradient, gradient);
+  });
 }
 
 #define ODPD_INSTANTIATE(D)                                                                      \
@@ -183,7 +204,8 @@ void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian
                                     std::vector<Vec<D>>&);                                       \
   template void add_friction_blocks<D>(                                                          \
       const PairNetwork<D>&, std::vector<std::array<double, static_cast<std::size_t>(D * D)>>&); \
-  template void add_laplacian<D>(const PairNetwork<D>&, std::vector<double>&);
+  template void add_laplacian<D>(const PairNetwork<D>&, std::vector<double>&);                   \
+  template void add_density_curvature<D>(const PairNetwork<D>&, std::vector<double>&);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)
 #undef ODPD_INSTANTIATE

@@ -157,7 +157,7 @@ void BondedModel<D>::write_bond(const Bond& bond, double half_box, const Box<D>&
                     "larger H",
                     bond.i, bond.j, r, bond.p.r_0 - bond.p.r_max, bond.p.r_0 + bond.p.r_max),
         bond.i);
-  t.kT = pairs_->pair(r, Site{particles.species[i]}, Site{particles.species[j]}).kT;
+  t.kT = pairs_->pair(r, site_of(particles, i), site_of(particles, j)).kT;
   network.i[k] = static_cast<std::int32_t>(i);
   network.j[k] = static_cast<std::int32_t>(j);
   network.e[k] = r > 0.0 ? (1.0 / r) * d : overlap_direction<D>(bond.i, bond.j);
@@ -168,6 +168,19 @@ void BondedModel<D>::write_bond(const Bond& bond, double half_box, const Box<D>&
   network.zeta_par[k] = 0.0;
   network.zeta_perp.set(k, 0.0);
   network.kT.set(k, t.kT);
+}
+
+// Force and stiffness that the densities give an edge.
+template <int D>
+PairTerms BondedModel<D>::of_densities(const Particles<D>& particles, const PairNetwork<D>& network,
+                                       std::size_t k) const {
+  const DensityColumns& columns = network.densities;
+  if (columns.empty()) return {};
+  const auto i = static_cast<std::size_t>(network.i[k]), j = static_cast<std::size_t>(network.j[k]);
+  const double slope = columns.psi_1[i] + columns.psi_1[j];
+  const Derivatives w =
+      densities()->weight(network.r[k], site_of(particles, i), site_of(particles, j));
+  return {.f_c = -slope * w.first, .k_c = slope * w.second};
 }
 
 template <int D>
@@ -181,9 +194,10 @@ void BondedModel<D>::exclude(const Particles<D>& particles, PairNetwork<D>& netw
     const auto at = std::lower_bound(begin, end, static_cast<std::int32_t>(high));
     if (at == end || *at != static_cast<std::int32_t>(high)) continue;
     const auto k = static_cast<std::size_t>(at - network.j.begin());
-    network.f_c[k] = 0.0;
     network.u.set(k, 0.0);
-    network.k_c.set(k, 0.0);
+    const PairTerms rest = of_densities(particles, network, k);
+    network.f_c[k] = rest.f_c;
+    network.k_c.set(k, rest.k_c);
     if (bond.p.exclude != BondExclusion::all) continue;
     network.zeta_par[k] = 0.0;
     network.zeta_perp.set(k, 0.0);
@@ -204,7 +218,7 @@ double BondedModel<D>::bonded_energy(std::size_t i, const Vec<D>& r, const Box<D
     if (!(length < half_box)) return std::numeric_limits<double>::infinity();
     energy += bond_terms(bond.p, length).u;
     if (bond.p.exclude != BondExclusion::none)
-      energy -= pairs_->pair(length, Site{particles.species[i]}, Site{particles.species[j]}).u;
+      energy -= pairs_->pair(length, site_of(particles, i), site_of(particles, j)).u;
   }
   return energy + frame_energy(particles.id[i], r, box, particles);
 }

@@ -6,6 +6,8 @@
 #include "edge_kernels.h"
 #include "odpd/core/isa.h"
 #include "odpd/core/parallel.h"
+#include "odpd/pairs/density_writer.h"
+#include "odpd/pairs/edge_loop.h"
 
 namespace odpd {
 
@@ -42,6 +44,9 @@ struct Differences {
   }
 };
 
+// Which pairs of the list become edges: those that may move relative to each other, or all others.
+enum class Pairs { moving, rigid };
+
 template <int D>
 class Writer {
  public:
@@ -49,7 +54,7 @@ class Writer {
 
   Writer(const PairList<D>& list, double cutoff, const Box<D>& box,
          std::span<const Vec<D>> positions, const Particles<D>& particles, const Fill& fill,
-         PairNetwork<D>& network)
+         PairNetwork<D>& network, Pairs wanted)
       : kernel_(for_isa(kernels::edge_portable, kernels::edge_avx2, kernels::edge_avx512)),
         list_(list),
         reach2_(cutoff * cutoff),
@@ -57,7 +62,8 @@ class Writer {
         particles_(particles),
         fill_(fill),
         network_(network),
-        box_(box) {
+        box_(box),
+        wanted_(wanted) {
     for (std::size_t c = 0; c < D; ++c) {
       images_.length[c] = box.size.x[c];
       images_.half[c] =
@@ -65,11 +71,13 @@ class Writer {
     }
     network_.particles = list.rows();
     network_.first.resize(static_cast<std::size_t>(list.rows()) + 1);
+    network_.densities.resize(0, 0);
   }
 
   void write() {
     const bool known = std::any_of(particles_.group.begin(), particles_.group.end(),
                                    [](std::int32_t group) { return group != 0; });
+    if (wanted_ == Pairs::rigid && !known) return network_.resize(0);
     // A list without skin has the edges themselves, but for a pair at the cutoff, to rounding.
     if (known || list_.skin() > 0.0 ||
         !write_rows([&](std::int64_t p) { return list_.partners(p); })) {
@@ -80,19 +88,17 @@ class Writer {
                      static_cast<std::size_t>(contacts_[static_cast<std::size_t>(p)]));
       });
     }
-    network_.index_rows();
+    if (wanted_ == Pairs::moving) network_.index_rows();
   }
 
  private:
-  // Partners closer than the cutoff that may move relative to it, to `scratch` where the list's row begins in it.
+  // Wanted partners closer than the cutoff, to `scratch` where the list's row begins in it.
   void find_contacts() {
     const auto n = static_cast<std::size_t>(list_.rows());
     candidates_.assign(n + 1, 0);
     contacts_.assign(n, 0);
     for (std::size_t p = 0; p < n; ++p)
-      candidates_[p + 1] =
-          candidates_[p] +
-          static_cast<std::int64_t>(list_.partners(static_cast<std::int64_t>(p)).size());
+      candidates_[p + 1] = candidates_[p] + static_cast<std::int64_t>(candidates_of(p).size());
     if (network_.scratch.size() < static_cast<std::size_t>(candidates_.back()))
       network_.scratch.resize(static_cast<std::size_t>(candidates_.back()));
     parallel_ranges(list_.rows(), rows_per_block, [&](std::int64_t begin, std::int64_t end) {
@@ -102,8 +108,15 @@ class Writer {
     });
   }
 
+  // A free particle has no rigid pairs.
+  std::span<const std::int32_t> candidates_of(std::size_t p) const {
+    if (wanted_ == Pairs::rigid && particles_.is_free(p)) return {};
+    return list_.partners(static_cast<std::int64_t>(p));
+  }
+
   void find_contacts_of(std::size_t p, Differences<D>& pairs) {
-    const auto partners = list_.partners(static_cast<std::int64_t>(p));
+    const auto partners = candidates_of(p);
+    const bool moving = wanted_ == Pairs::moving;
     std::int32_t* out = network_.scratch.data() + candidates_[p];
     for (std::size_t k = 0; k < partners.size(); k += block) {
       const auto some = partners.subspan(k, std::min(block, partners.size() - k));
@@ -112,12 +125,12 @@ class Writer {
         pairs.add(positions_[p], positions_[static_cast<std::size_t>(q)]);
       pairs.close(kernel_, images_, box_);
       for (std::size_t l = 0; l < some.size(); ++l) {
-        // Not between two of known velocity, nor inside a body.
+        // Two of known velocity, or inside a body, do not move.
         const std::int32_t a = particles_.group[p];
         const std::int32_t b = particles_.group[static_cast<std::size_t>(some[l])];
-        const bool wanted = a > 0 ? b <= 0 : a == 0 || a != b;
+        const bool moves = a > 0 ? b <= 0 : a == 0 || a != b;
         *out = some[l];  // never beyond the row: as many were read
-        if (wanted && pairs.square[l] < reach2_) ++out;
+        if (moves == moving && pairs.square[l] < reach2_) ++out;
       }
     }
     contacts_[p] = static_cast<std::int32_t>(out - (network_.scratch.data() + candidates_[p]));
@@ -180,6 +193,7 @@ class Writer {
   const Fill& fill_;
   PairNetwork<D>& network_;
   const Box<D>& box_;
+  Pairs wanted_;
   std::vector<std::int64_t> candidates_;  // where each row of the list begins
   std::vector<std::int32_t> contacts_;    // pairs of each row that are edges
   std::vector<int> outside_;
@@ -192,14 +206,38 @@ void write_edge_geometry(const PairList<D>& list, double cutoff, const Box<D>& b
                          std::span<const Vec<D>> positions, const Particles<D>& particles,
                          const std::function<void(PairNetwork<D>&, std::size_t, std::size_t)>& fill,
                          PairNetwork<D>& network) {
-  Writer<D>(list, cutoff, box, positions, particles, fill, network).write();
+  Writer<D>(list, cutoff, box, positions, particles, fill, network, Pairs::moving).write();
 }
 
-template void write_edge_geometry<2>(
-    const PairList<2>&, double, const Box<2>&, std::span<const Vec<2>>, const Particles<2>&,
-    const std::function<void(PairNetwork<2>&, std::size_t, std::size_t)>&, PairNetwork<2>&);
-template void write_edge_geometry<3>(
-    const PairList<3>&, double, const Box<3>&, std::span<const Vec<3>>, const Particles<3>&,
-    const std::function<void(PairNetwork<3>&, std::size_t, std::size_t)>&, PairNetwork<3>&);
+template <int D>
+void write_rigid_geometry(const PairList<D>& list, double cutoff, const Box<D>& box,
+                          std::span<const Vec<D>> positions, const Particles<D>& particles,
+                          PairNetwork<D>& network) {
+  const typename Writer<D>::Fill nothing = [](PairNetwork<D>&, std::size_t, std::size_t) {};
+  Writer<D>(list, cutoff, box, positions, particles, nothing, network, Pairs::rigid).write();
+}
+
+template <int D>
+void add_to_ends(const PairNetwork<D>& network, std::span<const double> value,
+                 std::vector<double>& sum) {
+  for_each_owned_edge(
+      network, [&](std::size_t p, std::size_t k) { sum[p] += value[k]; },
+      [&](std::size_t p, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) sum[p] += value[k];
+      });
+}
+
+#define ODPD_INSTANTIATE(D)                                                                    \
+  template void write_edge_geometry<D>(                                                        \
+      const PairList<D>&, double, const Box<D>&, std::span<const Vec<D>>, const Particles<D>&, \
+      const std::function<void(PairNetwork<D>&, std::size_t, std::size_t)>&, PairNetwork<D>&); \
+  template void write_rigid_geometry<D>(const PairList<D>&, double, const Box<D>&,             \
+                                        std::span<const Vec<D>>, const Particles<D>&,          \
+                                        PairNetwork<D>&);                                      \
+  template void add_to_ends<D>(const PairNetwork<D>&, std::span<const double>,                 \
+                               std::vector<double>&);
+ODPD_INSTANTIATE(2)
+ODPD_INSTANTIATE(3)
+#undef ODPD_INSTANTIATE
 
 }  // namespace odpd

@@ -3,27 +3,47 @@
 #include <algorithm>
 #include <numeric>
 
+#include "odpd/core/parallel.h"
 #include "odpd/core/room.h"
 #include "odpd/pairs/edge_loop.h"
 
 namespace odpd {
+
+namespace {
+
+// Some room more: the number of edges changes by little from one configuration to the next.
+void resize_with_room(auto& column, std::size_t n) {
+  if (column.capacity() < n) column.reserve(n + n / 32);
+  column.resize(n);
+}
+
+}  // namespace
+
+void DensityColumns::resize(std::size_t particles, std::size_t pairs) {
+  for (auto* column : {&d, &psi, &psi_1, &psi_2}) column->resize(particles);
+  for (auto* column : {&W, &W_1}) resize_with_room(*column, pairs);
+}
+
+std::int64_t DensityColumns::bytes() const {
+  return static_cast<std::int64_t>((4 * d.size() + 2 * W.size()) * sizeof(double));
+}
+
+template <int D>
+double PairNetwork<D>::energy() const {
+  return densities.empty() ? u.sum() : u.sum() + fixed_sum(densities.psi);
+}
 
 template <int D>
 void PairNetwork<D>::resize(std::int64_t edges) {
   const auto n = static_cast<std::size_t>(edges);
   bonds = 0;
   beyond.clear();
-  // Some room more: the number of edges changes by little from one configuration to the next.
-  const auto resize_one = [&](auto& column) {
-    if (column.capacity() < n) column.reserve(n + n / 32);
-    column.resize(n);
-  };
-  resize_one(i);
-  resize_one(j);
-  resize_one(e);
-  resize_one(r);
-  resize_one(f_c);
-  resize_one(zeta_par);
+  resize_with_room(i, n);
+  resize_with_room(j, n);
+  resize_with_room(e, n);
+  resize_with_room(r, n);
+  resize_with_room(f_c, n);
+  resize_with_room(zeta_par, n);
   for (Column* column : {&u, &k_c, &zeta_perp, &kT}) column->resize(n);
 }
 
@@ -96,7 +116,7 @@ void PairNetwork<D>::index_bonds(std::int64_t count) {
 template <int D>
 std::int64_t PairNetwork<D>::bytes() const {
   constexpr std::size_t per_edge = 2 * sizeof(std::int32_t) + sizeof(Vec<D>) + 3 * sizeof(double);
-  std::int64_t columns = 0;
+  std::int64_t columns = densities.bytes();
   for (const Column* column : {&u, &k_c, &zeta_perp, &kT}) columns += column->bytes();
   return columns + static_cast<std::int64_t>(i.size() * per_edge + slip_0.size() * sizeof(Vec<D>) +
                                              beyond.size() * sizeof(Beyond) +

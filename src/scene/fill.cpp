@@ -251,6 +251,7 @@ void relax(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& 
     add_conservative_forces(network, force);
     surroundings.add_potential_forces(particles, particles.position, force);
     surroundings.potential_energy(particles, particles.position, stiffness);
+    add_density_curvature(network, stiffness);
     for (std::size_t i = 0; i < force.size(); ++i) {
       for (const std::int32_t edge : network.edges_of(static_cast<std::int64_t>(i)))
         // Both ends of a bond move, with few other neighbours to damp it.

@@ -118,7 +118,7 @@ TiedAverages measured_on_sites(const TiedRun& run) {
     const auto& record = integrator->step(dynamics, clock);
     clock.advance();
     if (!clock.measuring()) continue;
-    energy += record.start.network.u.sum();
+    energy += record.start.network.energy();
     std::vector<double> laplacian(particles.position.size(), 0.0);
     add_laplacian(record.start.network, laplacian);
     for (std::size_t i = 0; i < laplacian.size(); ++i) {

@@ -59,8 +59,14 @@ template <int D>
 void add_friction_blocks(const PairNetwork<D>& network,
                          std::vector<std::array<double, static_cast<std::size_t>(D* D)>>& blocks);
 
-/// laplacian[p] += sum over edges of k_c - (D - 1) f_c / r and what bonds have beyond: the pair part of the Laplacian of U in r_p.
+/// laplacian[p] += sum over edges of k_c - (D - 1) f_c / r and what bonds have beyond, and for free particles that of the
+/// densities: the Laplacian of U in r_p without that of external potentials.
 template <int D>
 void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian);
+
+/// laplacian[p] += sum_q psi''(d_q) W'^2 + psi''(d_p) |sum_q W' e|^2, what the densities of p and its partners q add to the Laplacian
+/// besides the edges; nothing in models without. Of other than free particles only the part of pairs that are edges.
+template <int D>
+void add_density_curvature(const PairNetwork<D>& network, std::vector<double>& laplacian);
 
 }  // namespace odpd

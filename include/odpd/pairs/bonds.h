@@ -17,7 +17,9 @@
 namespace odpd {
 
 enum class BondLaw { harmonic, fene, sites };
-/// What a bonded pair keeps of its interaction as a pair: all, friction and noise without the conservative force, nothing.
+/// What a bonded pair keeps of its interaction as a pair: all, friction and noise without the conservative force, nothing. In a
+/// model with densities this is about the pair's own terms. A bonded neighbour takes up room like any other: it counts in the
+/// densities, and the force that these exert on the pair stays, without which it would not be the gradient of the energy.
 enum class BondExclusion { none, repulsion, all };
 
 struct BondParameters {
@@ -55,6 +57,7 @@ class BondedModel : public PairModel<D> {
   /// the box, and where a frame may turn freely.
   void write_edges(const PairList<D>& list, const Box<D>& box, std::span<const Vec<D>> positions,
                    const Particles<D>& particles, PairNetwork<D>& network) const override;
+  const Densities* densities() const override { return pairs_->densities(); }
   bool conservative() const override { return pairs_->conservative() || !bonds_.empty(); }
   bool thermal() const override { return pairs_->thermal(); }
   double bonded_energy(std::size_t i, const Vec<D>& r, const Box<D>& box,
@@ -64,6 +67,8 @@ class BondedModel : public PairModel<D> {
 
  private:
   std::size_t place_of(std::int64_t id, const Particles<D>& particles) const;
+  PairTerms of_densities(const Particles<D>& particles, const PairNetwork<D>& network,
+                         std::size_t k) const;
   void exclude(const Particles<D>& particles, PairNetwork<D>& network) const;
   void write_bond(const Bond& bond, double half_box, const Box<D>& box,
                   std::span<const Vec<D>> positions, const Particles<D>& particles, std::size_t k,

@@ -19,32 +19,41 @@ Vec<D> overlap_direction(std::int64_t id_i, std::int64_t id_j) {
 }
 
 /// Fills i, j, e, r and the index of `network` with the pairs of the list closer than the cutoff. `fill(begin, end)` then
-/// writes the other columns of the edges begin <= k < end, from r, while these are close at hand; it may run on any thread,
-/// and again for the same edges.
+/// writes the other columns of the edges begin <= k < end, from r, while these are close at hand. It may run on any thread, and
+/// again for the same edges: it must not add to what it finds, nor sum over them.
 template <int D>
 void write_edge_geometry(const PairList<D>& list, double cutoff, const Box<D>& box,
                          std::span<const Vec<D>> positions, const Particles<D>& particles,
                          const std::function<void(PairNetwork<D>&, std::size_t, std::size_t)>& fill,
                          PairNetwork<D>& network);
 
-/// `terms(r, site_i, site_j)` is the model's inline pair function.
+/// The columns of the edges begin <= k < end that `terms(r, site_i, site_j)`, the model's inline pair function, gives for what
+/// `site(i)` says of a particle.
+template <int D, class Terms, class SiteOf>
+void fill_terms(const Terms& terms, const SiteOf& site, std::size_t begin, std::size_t end,
+                PairNetwork<D>& n) {
+  const auto u = n.u.each(), k_c = n.k_c.each(), zeta_perp = n.zeta_perp.each(), kT = n.kT.each();
+  for (std::size_t k = begin; k < end; ++k) {
+    const PairTerms t = terms(n.r[k], site(static_cast<std::size_t>(n.i[k])),
+                              site(static_cast<std::size_t>(n.j[k])));
+    u[k] = t.u;
+    n.f_c[k] = t.f_c;
+    k_c[k] = t.k_c;
+    n.zeta_par[k] = t.zeta_par;
+    zeta_perp[k] = t.zeta_perp;
+    kT[k] = t.kT;
+  }
+}
+
+/// All edges in one pass, each while its geometry is close at hand.
 template <int D, class Terms>
 void write_pair_edges(const Terms& terms, double cutoff, const PairList<D>& list, const Box<D>& box,
                       std::span<const Vec<D>> positions, const Particles<D>& particles,
                       PairNetwork<D>& network) {
   for (Column* column : {&network.u, &network.k_c, &network.zeta_perp, &network.kT}) column->each();
+  const auto site = [&](std::size_t i) { return site_of(particles, i); };
   const auto fill = [&](PairNetwork<D>& n, std::size_t begin, std::size_t end) {
-    const auto u = n.u.each(), k_c = n.k_c.each(), zeta_perp = n.zeta_perp.each(), kT = n.kT.each();
-    for (std::size_t k = begin; k < end; ++k) {
-      const PairTerms t = terms(n.r[k], Site{particles.species[static_cast<std::size_t>(n.i[k])]},
-                                Site{particles.species[static_cast<std::size_t>(n.j[k])]});
-      u[k] = t.u;
-      n.f_c[k] = t.f_c;
-      k_c[k] = t.k_c;
-      n.zeta_par[k] = t.zeta_par;
-      zeta_perp[k] = t.zeta_perp;
-      kT[k] = t.kT;
-    }
+    fill_terms(terms, site, begin, end, n);
   };
   write_edge_geometry<D>(list, cutoff, box, positions, particles, fill, network);
   network.transverse = false;

@@ -24,6 +24,16 @@ struct PairTerms {
   double kT = 0.0;         ///< temperature of the pair (energy)
 };
 
+/// What a model with densities (pairs/densities.h) knows of each particle and of each edge of a pair. Empty for others.
+struct DensityColumns {
+  std::vector<double> d, psi, psi_1, psi_2;  ///< of each particle: d, psi(d), psi'(d), psi''(d)
+  std::vector<double> W, W_1;                ///< of each edge: W(r), W'(r)
+
+  bool empty() const { return d.empty(); }
+  void resize(std::size_t particles, std::size_t pairs);
+  std::int64_t bytes() const;
+};
+
 /// Edges as structure of arrays, ordered by (i, j) with i < j in memory. Edges between two particles of known
 /// velocity, or of one rigid body, are left out. Bonds follow, in an order of their own.
 template <int D>
@@ -42,6 +52,7 @@ struct PairNetwork {
         0.0;  ///< to the Laplacian of U in either particle, besides k_c - (D - 1) f_c/r
   };
   std::vector<Beyond> beyond;  ///< of each bond; empty where all are of two particles
+  DensityColumns densities;
   /// Relative velocity of the images that interact: the sliding ones of Lees-Edwards (length/time). Empty without shear;
   /// written by Dynamics::evaluate for all edges, bonds too.
   std::vector<Vec<D>> slip_0;
@@ -60,6 +71,8 @@ struct PairNetwork {
     const auto n = static_cast<std::size_t>(start[static_cast<std::size_t>(particle) + 1]) - b;
     return std::span<const std::int32_t>(edge).subspan(b, n);
   }
+  /// Energy of all edges and of all densities.
+  double energy() const;
   /// Conservative force on i of edge k.
   Vec<D> push(std::size_t k) const {
     const auto first_bond = static_cast<std::size_t>(pairs());
