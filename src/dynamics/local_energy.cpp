@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "odpd/core/error.h"
+
 namespace odpd {
 
 template <int D>
@@ -17,7 +19,8 @@ LocalEnergy<D>::LocalEnergy(const Box<D>& box, const PairModel<D>& model,
       around_(static_cast<std::size_t>(grid_.cells())),
       members_(around_.size()),
       cell_(particles.position.size()),
-      candidates_(particles.position.size()) {
+      candidates_(particles.position.size()),
+      densities_(model.densities()) {
   for (int c = 0; c < D; ++c)
     period_[c] = box.is_periodic(c) ? box.size[c] : std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < around_.size(); ++c)
@@ -32,6 +35,7 @@ void LocalEnergy<D>::place() {
     cell_[i] = grid_.cell_of(r);
     members_[static_cast<std::size_t>(cell_[i])].push_back({r, static_cast<std::int32_t>(i)});
   }
+  if (densities_ != nullptr) sum_densities();
 }
 
 // Distances of all candidates first, without a branch per candidate, which nobody could predict.
@@ -53,22 +57,106 @@ std::span<const typename LocalEnergy<D>::Partner> LocalEnergy<D>::partners_of(co
   return {candidates_.data(), found};
 }
 
+// Not inside one body, where pairs stay as they are.
 template <int D>
-double LocalEnergy<D>::at(std::size_t i, const Vec<D>& r) {
+bool LocalEnergy<D>::meet(std::size_t i, std::size_t j) const {
+  const bool inside = particles_.group[i] != 0 && particles_.group[i] == particles_.group[j];
+  return j != i && !inside;
+}
+
+// U_i(r); what i is to the densities there is added to the new ones with this sign.
+template <int D>
+double LocalEnergy<D>::at(std::size_t i, const Vec<D>& r, double sign) {
   double energy = surroundings_.potential_energy_at(r);
   if (!model_.conservative()) return energy;
-  const Site site{particles_.species[i]};
-  for (const Partner& other : partners_of(r)) {
+  const Site site = site_of(particles_, i);
+  const auto partners = partners_of(r);
+  for (const Partner& other : partners) {
     const auto j = static_cast<std::size_t>(other.index);
-    const bool inside = particles_.group[i] != 0 && particles_.group[i] == particles_.group[j];
-    if (j != i && !inside)
-      energy += model_.pair(std::sqrt(other.r2), site, Site{particles_.species[j]}).u;
+    if (meet(i, j)) energy += model_.pair(std::sqrt(other.r2), site, site_of(particles_, j)).u;
   }
+  if (densities_ != nullptr) weigh(i, partners, sign);
   return energy + model_.bonded_energy(i, r, box_, particles_);
 }
 
 template <int D>
-void LocalEnergy<D>::moved(std::size_t i, const Vec<D>& r) {
+double LocalEnergy<D>::change(std::span<const std::int32_t> moved, std::span<const Vec<D>> to) {
+  moved_.assign(moved.begin(), moved.end());
+  to_.assign(to.begin(), to.end());
+  for (const NewDensity& one : new_) slot_[static_cast<std::size_t>(one.index)] = -1;
+  new_.clear();
+  double change = 0.0;
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    const auto i = static_cast<std::size_t>(moved_[k]);
+    const std::int32_t group = particles_.group[static_cast<std::size_t>(moved_[0])];
+    if (k > 0 && (group == 0 || particles_.group[i] != group))
+      throw ConfigError("particles that move at once must be constituents of one body");
+    const double there = at(i, to_[k], 1.0), here = at(i, particles_.position[i], -1.0);
+    change += there - here;
+  }
+  return densities_ == nullptr ? change : change + density_change();
+}
+
+template <int D>
+void LocalEnergy<D>::accept() {
+  for (std::size_t k = 0; k < moved_.size(); ++k) move(static_cast<std::size_t>(moved_[k]), to_[k]);
+  for (const NewDensity& one : new_)
+    density_[static_cast<std::size_t>(one.index)] = {one.d, one.psi};
+}
+
+template <int D>
+void LocalEnergy<D>::sum_densities() {
+  const std::size_t n = particles_.position.size();
+  density_.resize(n);
+  slot_.assign(n, -1);
+  new_.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Site site = site_of(particles_, i);
+    double d = densities_->self(site);
+    for (const Partner& other : partners_of(particles_.position[i])) {
+      const auto j = static_cast<std::size_t>(other.index);
+      if (j != i) d += densities_->weight(std::sqrt(other.r2), site, site_of(particles_, j)).value;
+    }
+    density_[i] = {d, densities_->energy(site_of(particles_, i, d)).value};
+  }
+}
+
+template <int D>
+double& LocalEnergy<D>::new_density(std::size_t i) {
+  if (slot_[i] < 0) {
+    slot_[i] = static_cast<std::int32_t>(new_.size());
+    new_.push_back({static_cast<std::int32_t>(i), density_[i].d, 0.0});
+  }
+  return new_[static_cast<std::size_t>(slot_[i])].d;
+}
+
+template <int D>
+void LocalEnergy<D>::weigh(std::size_t i, std::span<const Partner> partners, double sign) {
+  const Site site = site_of(particles_, i);
+  double sum = 0.0;
+  for (const Partner& other : partners) {
+    const auto j = static_cast<std::size_t>(other.index);
+    if (!meet(i, j)) continue;
+    const double w = densities_->weight(std::sqrt(other.r2), site, site_of(particles_, j)).value;
+    new_density(j) += sign * w;
+    sum += w;
+  }
+  new_density(i) += sign * sum;
+}
+
+template <int D>
+double LocalEnergy<D>::density_change() {
+  double change = 0.0;
+  for (NewDensity& one : new_) {
+    const auto i = static_cast<std::size_t>(one.index);
+    one.psi = densities_->energy(site_of(particles_, i, one.d)).value;
+    change += one.psi - density_[i].psi;
+  }
+  return change;
+}
+
+template <int D>
+void LocalEnergy<D>::move(std::size_t i, const Vec<D>& r) {
   const auto self = static_cast<std::int32_t>(i);
   auto& from = members_[static_cast<std::size_t>(cell_[i])];
   const auto at =

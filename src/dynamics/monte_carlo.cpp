@@ -85,9 +85,10 @@ bool MonteCarlo<D>::try_move(Dynamics<D>& dynamics, std::size_t i, const std::ar
   // A body force acts along bounded directions only, where nothing wraps.
   const double work = dot(force_[i], r - particles.position[i]);
   box.wrap(r, image);
-  const double change = energy_->at(i, r) - energy_->at(i, particles.position[i]) - work;
+  const auto self = static_cast<std::int32_t>(i);
+  const double change = energy_->change({&self, 1}, {&r, 1}) - work;
   if (!(change <= 0.0 || u.back() < std::exp(-change / dynamics.constants().kT))) return false;
-  energy_->moved(i, r);
+  energy_->accept();
   particles.position[i] = r;
   particles.image[i] = image;
   return true;
@@ -114,20 +115,20 @@ bool MonteCarlo<D>::try_body(Dynamics<D>& dynamics, std::size_t body, const Coun
   pose.advance(motion, 1.0, box);
   std::vector<Vec<D>> position(constituents.size());
   std::vector<typename Particles<D>::Image> image(constituents.size());
-  double change = 0.0;
+  double work = 0.0;
   for (std::size_t k = 0; k < constituents.size(); ++k) {
     const auto p = static_cast<std::size_t>(constituents[k]);
     place_constituent(b, pose, k, box, position[k], image[k]);
     for (int c = 0; c < D; ++c)
       if (!box.is_periodic(c) && (position[k][c] < 0.0 || position[k][c] > box.size[c]))
         return false;
-    change += energy_->at(p, position[k]) - energy_->at(p, particles.position[p]) -
-              dot(force_[p], box.separation(position[k], particles.position[p]));
+    work += dot(force_[p], box.separation(position[k], particles.position[p]));
   }
+  const double change = energy_->change(constituents, position) - work;
   if (!(change <= 0.0 || turn.back() < std::exp(-change / dynamics.constants().kT))) return false;
+  energy_->accept();
   for (std::size_t k = 0; k < constituents.size(); ++k) {
     const auto p = static_cast<std::size_t>(constituents[k]);
-    energy_->moved(p, position[k]);
     particles.position[p] = position[k];
     particles.image[p] = image[k];
   }

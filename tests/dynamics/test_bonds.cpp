@@ -98,7 +98,8 @@ TYPED_TEST(BondedEnergyTest, OfATrialMoveIsThatOfTheEdges) {
       Vec<D> to = from + support::uniform_vec<D>(0.07);
       box.wrap(to);
       local.place();
-      const double change = local.at(i, to) - local.at(i, from);
+      const auto self = static_cast<std::int32_t>(i);
+      const double change = local.change({&self, 1}, {&to, 1});
       const double before = energy();
       particles.position[i] = to;
       EXPECT_NEAR(change, energy() - before, 1e-10);

@@ -74,7 +74,7 @@ template <int D>
 double total_energy(Toy<D>& toy) {
   Stage<D> stage;
   toy.dynamics->evaluate(toy.particles.position, 0.0, stage);
-  double energy = stage.network.u.sum();
+  double energy = stage.network.energy();
   for (const Vec<D>& r : toy.particles.position) energy += toy.trap.potential_energy_at(r);
   return energy;
 }
@@ -94,9 +94,10 @@ TYPED_TEST(MonteCarloTest, AMoveChangesTheTotalEnergyByItsLocalChange) {
     const auto targets = support::random_points<D>(Vec<D>{}, toy.box.size, 60, 9);
     double energy = total_energy(toy);
     for (std::size_t i = 0; i < targets.size(); ++i) {
-      const double change = local.at(i, targets[i]) - local.at(i, toy.particles.position[i]);
+      const auto self = static_cast<std::int32_t>(i);
+      const double change = local.change({&self, 1}, {&targets[i], 1});
+      local.accept();
       toy.particles.position[i] = targets[i];
-      local.moved(i, targets[i]);
       const double after = total_energy(toy);
       EXPECT_NEAR(change, after - energy, 1e-10 * std::abs(after)) << "particle " << i;
       energy = after;

@@ -4,9 +4,9 @@
 //
 //   r' = r + step (2 u - 1),  u uniform in (0, 1)^D;   accepted with probability min(1, exp(-(U(r') - U(r))/kT))
 //
-// and then of every rigid body: its centre likewise, and its orientation by exp(step/radius (2 u - 1)) in the same
-// trial. Rejected where r' leaves the box in a bounded direction. U: pair energies, wall potentials, and -f.r of a body
-// force f along bounded directions.
+// and then of every rigid body: its centre likewise, and its orientation by exp(step/radius (2 u - 1)) in the same trial;
+// and rejected where r' leaves the box in a bounded direction. U: energies of pairs and densities, wall potentials, and -f.r
+// of a body force f along bounded directions.
 //
 // Exact for any fixed step: each trial move obeys detailed balance, and their order does not depend on positions. (In
 // the spatial order of memory it would, and a sweep would no longer leave the distribution alone.) The step is tuned
