@@ -10,6 +10,7 @@
 #include "odpd/core/random.h"
 #include "odpd/core/timer.h"
 #include "odpd/dynamics/integrator.h"
+#include "odpd/pairs/dpd.h"
 
 namespace bench {
 
@@ -121,11 +122,12 @@ template <int D>
 odpd::SceneSettings<D> scene_settings(const FluidSpec& spec, std::int64_t parts) {
   odpd::SceneSettings<D> s;
   s.seed = seed;
-  s.pairs[0].s = spec.s;
+  odpd::DpdParameters p{.s = spec.s};
   if (spec.far_friction) {
-    s.pairs[0].gamma_far = 0.1;
-    s.pairs[0].cutoff_far = 1.5;
+    p.gamma_far = 0.1;
+    p.cutoff_far = 1.5;
   }
+  s.model = odpd::make_dpd<D>(p);
   const double volume = static_cast<double>(spec.particles) / spec.density;
   const double edge =
       spec.thin > 0.0 ? std::pow(volume / spec.thin, 1.0 / (D - 1)) : std::pow(volume, 1.0 / D);

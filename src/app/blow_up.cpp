@@ -9,18 +9,10 @@
 #include "odpd/analysis/thermo.h"
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
-#include "odpd/scene/physical_inputs.h"
 
 namespace odpd {
 
 namespace {
-
-// Energy per particle of a random arrangement: n/2 [u].
-template <int D>
-double random_energy(const DpdParameters& p, double density) {
-  return 0.5 * density * p.a * p.cutoff / (p.s_bar + 1.0) *
-         weight_moment<D>(0, p.s_bar + 1.0, p.cutoff);
-}
 
 double two_digits_down(double x) {
   const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
@@ -31,18 +23,6 @@ double two_digits_down(double x) {
 
 bool repulsion_is_explicit(const IntegratorSettings& integrator) {
   return integrator_traits(integrator.name).repulsion_limits_dt;
-}
-
-template <int D>
-double explicit_step_limit(const SceneSettings<D>& scene) {
-  double limit = std::numeric_limits<double>::infinity();
-  for (const DpdParameters& p : scene.pairs) {
-    if (p.a == 0.0) continue;
-    const double compliance = p.cutoff / (p.a * std::max(1.0, p.s_bar));
-    limit = std::min(
-        limit, std::max(0.2 * p.gamma * compliance, 0.1 * std::sqrt(scene.mass * compliance)));
-  }
-  return limit;
 }
 
 template <int D>
@@ -91,7 +71,7 @@ auto BlowUpWatch<D>::sum_pairs(const Stage<D>& stage, double dt) const -> Pairs 
   const Particles<D>& particles = scene_.particles();
   const PairNetwork<D>& network = stage.network;
   double reach = 0.0;  // without the weak friction of longer range
-  for (const DpdParameters& p : scene_.settings().pairs) reach = std::max(reach, p.cutoff);
+  for (const PairMoments& p : scene_.pair_moments()) reach = std::max(reach, p.range);
   Pairs sum;
   for (std::size_t k = 0; k < network.i.size(); ++k) {
     const auto i = static_cast<std::size_t>(network.i[k]),
@@ -125,29 +105,29 @@ std::string BlowUpWatch<D>::judge_temperatures(const Stage<D>& stage, const Pair
           "run.blow_up = {}",
           kinetic, bound, kT, multiple_);
   }
-  double a = 0.0, gamma = 0.0;
-  for (const DpdParameters& p : s.pairs) {
-    a = std::max(a, p.a);
-    gamma = std::max(gamma, p.gamma + p.gamma_perp);
+  double force = 0.0, friction = 0.0;
+  for (const PairMoments& p : scene_.pair_moments()) {
+    force = std::max(force, p.force);
+    friction = std::max(friction, p.zeta_par + p.zeta_perp);
   }
-  if (!(a > 0.0) || !(kT > 0.0)) return {};
+  if (!(force > 0.0) || !(kT > 0.0)) return {};
   double squares = 0.0;
   for (const double x : laplacian) squares += x * x;
   const double contacts = 2.0 * static_cast<double>(stage.network.size()) / n;
   const double drag =
-      contacts * gamma * flow_slip_ +
+      contacts * friction * flow_slip_ +
       s.largest_force() * fluid_depth() * std::pow(n / scene_.fluid_volume(), 1.0 / D);
-  const double force = fixed_sum(force_squared), curvature = fixed_sum(laplacian);
+  const double square = fixed_sum(force_squared), curvature = fixed_sum(laplacian);
   const double scale =
       kT * (std::max(curvature, 0.0) + 3.0 * std::sqrt(squares)) + n * drag * drag + load_squared_;
-  const bool sound = force <= multiple_ * scale;
+  const bool sound = square <= multiple_ * scale;
   if (!sound && ordered_)
     return fmt::format(
         "the configurational temperature {} (kT = {}, run.blow_up = {}): the particles lie as if "
         "thrown "
         "there at random",
         curvature > 0.0
-            ? fmt::format("is {:.3g}", force / curvature)
+            ? fmt::format("is {:.3g}", square / curvature)
             : std::string("has no value, as the mean curvature of the energy is negative"),
         kT, multiple_);
   ordered_ = ordered_ || sound;
@@ -165,9 +145,12 @@ std::string BlowUpWatch<D>::judge(const Stage<D>& stage, double dt) {
   const double energy = (stage.network.energy() + wall_energy) / n;
   if (!std::isfinite(energy)) return "the energy is not finite";
   if (start_energy_ < 0.0) {
-    start_energy_ = energy;
-    for (const DpdParameters& p : s.pairs)
-      start_energy_ = std::max(start_energy_, random_energy<D>(p, n / scene_.fluid_volume()));
+    // Attraction may take it below zero, which is no scale.
+    start_energy_ = std::max(energy, 0.0);
+    for (const PairMoments& p : scene_.pair_moments())
+      if (p.energy_beyond_core)
+        start_energy_ =
+            std::max(start_energy_, 0.5 * (n / scene_.fluid_volume()) * *p.energy_beyond_core);
   }
   const double bound = multiple_ * (start_energy_ + D * kT + s.largest_force() * fluid_depth() +
                                     load_ * scene_.model().cutoff() / n);
@@ -177,8 +160,9 @@ std::string BlowUpWatch<D>::judge(const Stage<D>& stage, double dt) {
         "the energy per particle, {:.4g}, is more than {:.4g}, with run.blow_up = {}", energy,
         bound, multiple_);
   const Pairs pairs = sum_pairs(stage, dt);
-  const bool strong = std::any_of(s.pairs.begin(), s.pairs.end(), [&](const DpdParameters& p) {
-    return p.a > 0.0 && p.a * p.cutoff >= 10.0 * kT;
+  const auto& kinds = scene_.pair_moments();
+  const bool strong = std::any_of(kinds.begin(), kinds.end(), [&](const PairMoments& p) {
+    return p.force > 0.0 && p.force * p.force_range >= 10.0 * kT;
   });
   if (strong && 2.0 * pairs.jumped > pairs.count)
     return fmt::format(
@@ -218,10 +202,14 @@ double BlowUpWatch<D>::friction_limit(const IntegratorSettings& integrator,
 }
 
 template <int D>
+std::optional<double> BlowUpWatch<D>::repulsion_limit() const {
+  return explicit_step_limit(scene_.pair_moments(), scene_.settings().mass);
+}
+
+template <int D>
 double BlowUpWatch<D>::smaller_step(const IntegratorSettings& integrator, const Stage<D>& stage,
                                     double dt) const {
-  const double repulsion =
-      !repulsion_is_explicit(integrator) ? dt : explicit_step_limit(scene_.settings());
+  const double repulsion = repulsion_is_explicit(integrator) ? repulsion_limit().value_or(dt) : dt;
   return two_digits_down(std::min({0.5 * dt, repulsion, friction_limit(integrator, stage)}));
 }
 
@@ -229,12 +217,12 @@ template <int D>
 std::string BlowUpWatch<D>::cure(const IntegratorSettings& integrator, const Stage<D>& stage,
                                  double dt, std::int64_t particle) const {
   std::vector<std::string> causes;
-  const double repulsion = explicit_step_limit(scene_.settings());
-  if (dt > repulsion && repulsion_is_explicit(integrator))
+  const std::optional<double> repulsion = repulsion_limit();
+  if (repulsion && dt > *repulsion && repulsion_is_explicit(integrator))
     causes.push_back(fmt::format(
-        "integrator.dt = {} is beyond {:.2g}, the limit of explicit repulsion (0.2 gamma/a of the "
-        "stiffest pair{})",
-        dt, repulsion, scene_.settings().mass > 0.0 ? ", or 0.1 sqrt(m/a)" : ""));
+        "integrator.dt = {} is beyond {:.2g}, the limit of explicit repulsion (0.2 zeta/k of the "
+        "stiffest pair, in DPD 0.2 gamma/a{})",
+        dt, *repulsion, scene_.settings().mass > 0.0 ? "; or 0.1 sqrt(m/k)" : ""));
   const double inertia = friction_limit(integrator, stage);
   if (dt > inertia)
     causes.push_back(
@@ -270,8 +258,6 @@ void BlowUpWatch<D>::load(const StateReader& in) {
   ordered_ = in.read_integers("ordered").at(0) != 0;
 }
 
-template double explicit_step_limit<2>(const SceneSettings<2>&);
-template double explicit_step_limit<3>(const SceneSettings<3>&);
 template class BlowUpWatch<2>;
 template class BlowUpWatch<3>;
 

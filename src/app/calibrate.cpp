@@ -13,6 +13,8 @@
 #include "odpd/core/error.h"
 #include "odpd/core/log.h"
 #include "odpd/core/timer.h"
+#include "odpd/pairs/dpd.h"
+#include "odpd/pairs/kinetic_theory.h"
 
 namespace odpd {
 
@@ -35,14 +37,14 @@ Config case_to_calibrate(const CalibrateOptions& options) {
 
 // Throws ConfigError for what the formulas and this measuring scene do not cover.
 template <int D>
-void check_fluid(const Config& fluid, const SceneSettings<D>& s) {
-  if (s.fluid.kT == 0.0)
+void check_fluid(const Config& fluid, const SceneSettings<D>& s, const DpdFluid& dpd) {
+  if (dpd.p.kT == 0.0)
     fluid.fail("kT",
                "a fluid at kT = 0 has no viscosity of its own (it rests in whatever "
                "structure it has): give kT > 0");
-  if (s.physical_inputs.alpha)
+  if (dpd.asked.alpha)
     fluid.fail("alpha", "sets a by gamma, which is being looked for: give a instead");
-  if (s.fluid.gamma_perp > 0.0)
+  if (dpd.p.gamma_perp > 0.0)
     fluid.fail("gamma_perp", "calibration changes gamma alone: leave it out");
   if (s.zeta_0 > 0.0)
     log_warning("fluid.zeta_0 is left out of the measurement: it would take momentum away");
@@ -57,10 +59,17 @@ CalibrationRecord read_record(const CalibrateOptions& options, const Config& con
   const Simulation<D> simulation(config, settings);
   const SceneSettings<D>& s = simulation.scene().settings();
   const Config fluid = config.table("fluid");
-  check_fluid(fluid, s);
+  const DpdFluid* dpd = dpd_fluid(*s.model);
+  if (dpd == nullptr)
+    fluid.fail("model",
+               fmt::format("odpd calibrate finds the friction of a fluid of model = \"dpd\", this "
+                           "one's is \"{}\": measure its viscosity in a case with an observer of "
+                           "kind = \"viscosity\"",
+                           s.model->name()));
+  check_fluid(fluid, s, *dpd);
   CalibrationRecord record;
   record.relative_error = options.relative_error;
-  record.eta = options.eta > 0.0 ? options.eta : s.physical_inputs.eta.value_or(0.0);
+  record.eta = options.eta > 0.0 ? options.eta : dpd->asked.eta.value_or(0.0);
   if (options.measure_only) {
     record.eta = 0.0;
   } else if (record.eta == 0.0) {
@@ -74,7 +83,7 @@ CalibrationRecord read_record(const CalibrateOptions& options, const Config& con
           ? static_cast<double>(simulation.scene().particles().free_count()) / s.fluid_volume()
           : s.density;
   m.mass = s.mass;
-  m.dpd = s.fluid;
+  m.dpd = dpd->p;
   m.shear_rate = options.shear_rate;
   m.seed = s.seed;
   m.particles =
@@ -147,10 +156,15 @@ class Calibrator {
     return MeasurementPlan{f.dpd.gamma, record_.relative_error};
   }
 
-  double kinetic_eta() const {
+  template <int D>
+  double kinetic_eta_in() const {
     const MeasuredFluid& f = record_.fluid;
-    return f.dimension == 2 ? kinetic_theory<2>(f.dpd, f.density, f.mass).eta_friction
-                            : kinetic_theory<3>(f.dpd, f.density, f.mass).eta_friction;
+    return kinetic_theory<D>(pair_moments(*make_dpd<D>(f.dpd), 1), {1.0}, f.density, f.mass)
+        .eta_friction;
+  }
+
+  double kinetic_eta() const {
+    return record_.fluid.dimension == 2 ? kinetic_eta_in<2>() : kinetic_eta_in<3>();
   }
 
   static void head() {

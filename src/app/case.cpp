@@ -311,18 +311,22 @@ void read_start_file(SceneSettings<D>& scene) {
 
 std::string portable_case(const Config& config) {
   std::vector<std::string> absolute;
-  constexpr std::array<std::pair<const char*, const char*>, 3> files{
-      {{"start", "file"}, {"bonds", "file"}, {"fluid", "calibration"}}};
-  for (const auto& [table, key] : files) {
-    const Config entry = config.table(table);
-    if (!entry.has(key) || entry.text(key).empty()) continue;
+  const auto add = [&](const Config& entry, const std::string& path, const std::string& key) {
+    if (!entry.has(key) || entry.text(key).empty()) return;
     const std::filesystem::path file = config.directory() / entry.text(key);
     std::string quoted;
     for (const char letter : std::filesystem::absolute(file).lexically_normal().string()) {
       if (letter == '"' || letter == '\\') quoted += '\\';
       quoted += letter;
     }
-    absolute.push_back(fmt::format("{}.{}=\"{}\"", table, key, quoted));
+    absolute.push_back(fmt::format("{}.{}=\"{}\"", path, key, quoted));
+  };
+  add(config.table("start"), "start", "file");
+  add(config.table("bonds"), "bonds", "file");
+  const std::vector<Config> pairs = config.tables("pair");
+  for (const std::string& key : model_file_keys()) {
+    add(config.table("fluid"), "fluid", key);
+    for (std::size_t k = 0; k < pairs.size(); ++k) add(pairs[k], fmt::format("pair.{}", k), key);
   }
   if (absolute.empty()) return config.resolved();
   return Config::from_text(config.resolved(), "case.toml", absolute).resolved();

@@ -41,7 +41,8 @@ std::string modelled(const Simulation<D>& simulation) {
   const Scene<D>& scene = simulation.scene();
   std::string out = "Modelled (+) and left out (-)\n";
   out += line(scene.model().conservative(), "conservative force",
-              scene.model().conservative() ? "a > 0" : "a = 0");
+              fmt::format("model {}{}", scene.model().name(),
+                          scene.model().conservative() ? "" : ", whose pairs have none"));
   if (!simulation.in_time()) {
     out += line(false, "motion in time", "monte-carlo samples equilibrium by trial moves");
   } else {

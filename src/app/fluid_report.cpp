@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,6 +11,8 @@
 
 #include "odpd/analysis/viscosity.h"
 #include "odpd/app/report.h"
+#include "odpd/pairs/dpd.h"
+#include "odpd/pairs/kinetic_theory.h"
 
 namespace odpd {
 
@@ -24,19 +27,29 @@ double density_of(const Scene<D>& scene) {
 
 template <int D>
 Named state_values(const Scene<D>& scene) {
-  const DpdParameters& p = scene.settings().fluid;
+  double range = 0.0;
+  for (const PairMoments& p : scene.pair_moments()) range = std::max(range, p.range);
   return {{"density", density_of(scene)},
           {"mass", scene.settings().mass},
-          {"kT", p.kT},
-          {"cutoff", p.cutoff}};
+          {"kT", scene.largest_kT()},
+          {"cutoff", range}};
 }
 
-Named dpd_values(const DpdParameters& p) {
-  return {{"a", p.a},
-          {"s_bar", p.s_bar},
-          {"gamma", p.gamma},
-          {"sigma", std::sqrt(2.0 * p.gamma * p.kT)},
-          {"s", p.s}};
+// Of the free particles, by species.
+template <int D>
+std::vector<double> fractions(const Scene<D>& scene) {
+  const Particles<D>& particles = scene.particles();
+  std::vector<double> fraction(scene.settings().species.size(), 0.0);
+  for (std::size_t i = 0; i < particles.position.size(); ++i)
+    if (particles.is_free(i)) fraction[static_cast<std::size_t>(particles.species[i])] += 1.0;
+  for (double& f : fraction) f /= static_cast<double>(particles.free_count());
+  return fraction;
+}
+
+template <int D>
+KineticTheory kinetic_theory_of(const Scene<D>& scene) {
+  return kinetic_theory<D>(scene.pair_moments(), fractions(scene), density_of(scene),
+                           scene.settings().mass);
 }
 
 Named asked_values(const PhysicalInputs& in) {
@@ -51,7 +64,9 @@ Named asked_values(const PhysicalInputs& in) {
   return values;
 }
 
-Named kinetic_values(const KineticTheory& k) {
+template <int D>
+Named kinetic_values(const Scene<D>& scene, const KineticTheory& k) {
+  const auto limit = explicit_step_limit(scene.pair_moments(), scene.settings().mass);
   return {{"eta", k.eta()},
           {"eta_friction", k.eta_friction},
           {"eta_kinetic", k.eta_kinetic},
@@ -62,7 +77,9 @@ Named kinetic_values(const KineticTheory& k) {
           {"diffusion", k.diffusion},
           {"pressure", k.pressure},
           {"bulk_modulus", k.bulk_modulus},
-          {"speed_of_sound", k.speed_of_sound}};
+          {"speed_of_sound", k.speed_of_sound},
+          {"energy_per_particle", k.energy},
+          {"step_limit", limit.value_or(std::nan(""))}};
 }
 
 std::string line(const char* head, const Named& values) {
@@ -72,7 +89,9 @@ std::string line(const char* head, const Named& values) {
     if (k % per_line == 0) out += fmt::format("{}  {:<15}", k > 0 ? "\n" : "", k > 0 ? "" : head);
     const double value = values[k].second;
     out += " " + values[k].first + " = " +
-           (std::isinf(value) ? "infinite" : fmt::format("{:.6g}", value));
+           (std::isnan(value)   ? "undefined"
+            : std::isinf(value) ? "infinite"
+                                : fmt::format("{:.6g}", value));
   }
   return out + "\n";
 }
@@ -148,10 +167,8 @@ std::string limits(const Scene<D>& scene) {
       "  Kinetic theory is a guide: it knows no structure and lets particles follow the mean flow. "
       "At small mass the\n  viscosity of friction alone is at most eta_friction, often a fraction "
       "of it, and repulsion adds its share:\n  measure it (docs/physical-inputs.md)\n";
-  if (settings.fluid.gamma_perp > 0.0 || settings.fluid.gamma_far > 0.0)
-    out += "  Of the friction it counts gamma alone, not gamma_perp and rattler_friction\n";
   if (settings.species.size() > 1)
-    out += "  These are the parameters of [fluid]; a [[pair]] may have others\n";
+    out += "  Of several species it takes the means over pairs of particles at random\n";
   return out;
 }
 
@@ -166,17 +183,20 @@ const Scalar* measured_viscosity(const Results& results) {
 
 template <int D>
 std::string fluid_text(const Scene<D>& scene, const Results& results) {
-  const SceneSettings<D>& settings = scene.settings();
-  const KineticTheory k = kinetic_theory<D>(settings.fluid, density_of(scene), settings.mass);
+  const PairModel<D>& model = *scene.settings().model;
+  const KineticTheory k = kinetic_theory_of(scene);
   std::string out = "Fluid\n" + line("state", state_values(scene));
-  out += line("DPD parameters", dpd_values(settings.fluid));
-  if (settings.physical_inputs.any())
-    out += line("asked for", asked_values(settings.physical_inputs));
-  if (const auto& c = settings.calibration)
+  const ModelParameters parameters = model.parameters();
+  out += line(parameters.heading.c_str(), parameters.values);
+  const DpdFluid* dpd = dpd_fluid(model);
+  if (dpd != nullptr && dpd->asked.any()) out += line("asked for", asked_values(dpd->asked));
+  if (dpd != nullptr && dpd->calibration) {
+    const Calibration& c = *dpd->calibration;
     out += fmt::format("  {:<15} gamma = {}, measured to give eta = {} ({})\n", "calibrated",
-                       with_error(c->fluid.gamma, c->gamma_error), with_error(c->eta, c->eta_error),
-                       c->file);
-  out += line("kinetic theory", kinetic_values(k));
+                       with_error(c.fluid.gamma, c.gamma_error), with_error(c.eta, c.eta_error),
+                       c.file);
+  }
+  out += line("kinetic theory", kinetic_values(scene, k));
   const Scalar* measured = measured_viscosity(results);
   out += fmt::format(
       "  {:<15} {}\n", "measured",
@@ -190,20 +210,22 @@ std::string fluid_text(const Scene<D>& scene, const Results& results) {
 
 template <int D>
 JsonObject fluid_json(const Scene<D>& scene, const Results& results) {
-  const SceneSettings<D>& settings = scene.settings();
-  const KineticTheory k = kinetic_theory<D>(settings.fluid, density_of(scene), settings.mass);
+  const PairModel<D>& model = *scene.settings().model;
+  const KineticTheory k = kinetic_theory_of(scene);
   JsonObject json;
   json.set("state", json_of(state_values(scene)));
-  json.set("dpd", json_of(dpd_values(settings.fluid)));
-  json.set("asked_for", json_of(asked_values(settings.physical_inputs)));
-  if (const auto& c = settings.calibration)
-    json.set("calibration", JsonObject()
-                                .set("file", c->file)
-                                .set("gamma", c->fluid.gamma)
-                                .set("gamma_stderr", c->gamma_error)
-                                .set("eta", c->eta)
-                                .set("eta_stderr", c->eta_error));
-  json.set("kinetic_theory", json_of(kinetic_values(k)));
+  json.set(model.name(), json_of(model.parameters().values));
+  if (const DpdFluid* dpd = dpd_fluid(model)) {
+    json.set("asked_for", json_of(asked_values(dpd->asked)));
+    if (const auto& c = dpd->calibration)
+      json.set("calibration", JsonObject()
+                                  .set("file", c->file)
+                                  .set("gamma", c->fluid.gamma)
+                                  .set("gamma_stderr", c->gamma_error)
+                                  .set("eta", c->eta)
+                                  .set("eta_stderr", c->eta_error));
+  }
+  json.set("kinetic_theory", json_of(kinetic_values(scene, k)));
   json.set("groups", json_of(group_values(scene, k, results)));
   const Scalar* measured = measured_viscosity(results);
   if (!measured) return json.set("viscosity_measured", std::numeric_limits<double>::quiet_NaN());

@@ -98,12 +98,13 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
   if (const std::string warning = simulation.integrator().warning(); !warning.empty())
     log_warning(warning);
   // Explicit conservative forces are accurate to one to two times this limit.
-  if (const double limit = 2.0 * explicit_step_limit(simulation.scene().settings());
-      repulsion_is_explicit(settings.integrator) && settings.clock.dt > limit)
+  const std::optional<double> limit =
+      explicit_step_limit(simulation.scene().pair_moments(), simulation.scene().settings().mass);
+  if (repulsion_is_explicit(settings.integrator) && limit && settings.clock.dt > 2.0 * *limit)
     log_warning(fmt::format(
         "integrator.dt = {} is beyond {:.3g}, twice the limit of explicit repulsion: it "
         "is no longer accurate there",
-        settings.clock.dt, limit));
+        settings.clock.dt, 2.0 * *limit));
 
   const fs::path directory = output_directory(options, settings);
   std::optional<CheckpointReader> checkpoint;

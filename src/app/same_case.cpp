@@ -8,10 +8,19 @@
 
 #include "odpd/app/scene_frame.h"
 #include "odpd/core/error.h"
+#include "odpd/pairs/registry.h"
 
 namespace odpd {
 
 namespace {
+
+// The case names a file there whose contents are in the checkpoint.
+bool is_file_of_model(const std::string& path) {
+  const auto named = [&](const std::string& key) { return path.ends_with("." + key); };
+  const std::vector<std::string> keys = model_file_keys();
+  return (path.starts_with("fluid.") || path.starts_with("pair.")) &&
+         std::any_of(keys.begin(), keys.end(), named);
+}
 
 // The values that a restart must find unchanged.
 std::vector<std::pair<std::string, std::string>> fixed_values(const Config& config) {
@@ -20,7 +29,7 @@ std::vector<std::pair<std::string, std::string>> fixed_values(const Config& conf
     const std::string& path = value.first;
     const auto in = [&](std::string_view table) { return path.rfind(table, 0) == 0; };
     if (path == "title" || path == "run.duration" || path == "run.blow_up" ||
-        path == "start.file" || path == "bonds.file" || path == "fluid.calibration" ||
+        path == "start.file" || path == "bonds.file" || is_file_of_model(path) ||
         path == "check")
       continue;
     if (in("run.until.")) continue;
@@ -69,8 +78,7 @@ void save_case(const Config& config, const Scene<D>& scene, StateWriter& run) {
     run.write("bonds", bond_ends(scene.bonds()));
     run.write("bond_numbers", bond_numbers(scene.bonds()));
   }
-  if (const auto& calibration = scene.settings().calibration)
-    run.write("calibrated_gamma", std::vector<double>{calibration->fluid.gamma});
+  scene.settings().model->save(run);
 }
 
 template <int D>
@@ -93,13 +101,7 @@ void require_same_case(const StateReader& run, const Config& config, const Scene
         fmt::format("the images of the checkpoint's run began with an offset of {}, those of "
                     "start.file with {}: start.file must be the one of that run",
                     run.read_doubles("shear_start").at(0), shear->start));
-  const auto& calibration = scene.settings().calibration;
-  if (run.has("calibrated_gamma") != calibration.has_value() ||
-      (calibration &&
-       run.read_doubles("calibrated_gamma") != std::vector<double>{calibration->fluid.gamma}))
-    throw ConfigError(
-        "the checkpoint has another friction than the file of fluid.calibration gives now: "
-        "restore that file");
+  scene.settings().model->check(run);
 }
 
 #define ODPD_INSTANTIATE(D)                                                 \

@@ -3,37 +3,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <set>
-#include <string_view>
 
 #include "odpd/app/case.h"
 #include "odpd/app/simulation.h"
 #include "odpd/core/error.h"
+#include "odpd/pairs/registry.h"
 
 namespace odpd {
 
 namespace {
 
 // What has no part in the equilibrium distribution: how the motion is followed and damped.
-constexpr std::array<std::string_view, 13> dynamical{"integrator.",
-                                                     "solver.",
-                                                     "run.",
-                                                     "output.",
-                                                     "neighbours.",
-                                                     "fluid.mass",
-                                                     "fluid.gamma",
-                                                     "fluid.gamma_perp",
-                                                     "fluid.eta",
-                                                     "fluid.Sc",
-                                                     "fluid.zeta_0",
-                                                     "fluid.s",
-                                                     "fluid.rattler_friction."};
-
 bool is_dynamical(const std::string& key) {
-  return std::any_of(dynamical.begin(), dynamical.end(), [&](std::string_view start) {
-    return start.back() == '.' ? key.starts_with(start) : key == start;
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list{"integrator", "solver",     "run",         "output",
+                                  "neighbours", "fluid.mass", "fluid.zeta_0"};
+    for (const std::string& name : dynamical_model_keys()) list.push_back("fluid." + name);
+    return list;
+  }();
+  return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+    return key == name || key.starts_with(name + ".");
   });
 }
 

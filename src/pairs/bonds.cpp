@@ -65,7 +65,7 @@ PairTerms bond_terms(const BondParameters& p, double r) {
 }
 
 template <int D>
-BondedModel<D>::BondedModel(std::unique_ptr<PairModel<D>> pairs, std::vector<Bond> bonds,
+BondedModel<D>::BondedModel(std::shared_ptr<const PairModel<D>> pairs, std::vector<Bond> bonds,
                             std::vector<SiteFrame<D>> frames)
     : pairs_(std::move(pairs)), bonds_(std::move(bonds)), frames_(std::move(frames)) {
   std::set<std::pair<std::int64_t, std::int64_t>> seen;

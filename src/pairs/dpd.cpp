@@ -13,21 +13,10 @@ namespace odpd {
 
 namespace {
 
-void require(bool ok, const char* name, double value, const char* range) {
-  if (!ok) throw ConfigError(fmt::format("DPD parameter {} = {} must be {}", name, value, range));
-}
-
 void validate(const DpdParameters& p) {
-  require(p.a >= 0.0, "a", p.a, "zero or positive");
-  require(p.s_bar > 0.0, "s_bar", p.s_bar, "positive");
-  require(p.gamma >= 0.0, "gamma", p.gamma, "zero or positive");
-  require(p.gamma_perp >= 0.0, "gamma_perp", p.gamma_perp, "zero or positive");
-  require(p.s >= 0.0, "s", p.s, "zero or positive");
-  require(p.cutoff > 0.0, "cutoff", p.cutoff, "positive");
-  require(p.kT >= 0.0, "kT", p.kT, "zero or positive");
-  require(p.gamma_far >= 0.0, "gamma_far", p.gamma_far, "zero or positive");
-  require(p.gamma_far == 0.0 || p.cutoff_far > p.cutoff, "cutoff_far", p.cutoff_far,
-          "larger than the cutoff, to reach particles without neighbours");
+  require_parameter(p.a >= 0.0, "a", p.a, "zero or positive");
+  require_parameter(p.s_bar > 0.0, "s_bar", p.s_bar, "positive");
+  validate(p.friction());
 }
 
 // The force of a pair must not depend on which of the two comes first in memory.
@@ -47,36 +36,64 @@ void validate(std::size_t species, const std::vector<DpdParameters>& table) {
 }  // namespace
 
 template <int D>
-DpdModel<D>::DpdModel(int species, std::vector<DpdParameters> parameters) : species_(species) {
+DpdModel<D>::DpdModel(int species, std::vector<DpdParameters> parameters, DpdFluid fluid)
+    : species_(species), fluid_(std::move(fluid)) {
   validate(static_cast<std::size_t>(species), parameters);
   for (const DpdParameters& p : parameters) {
-    table_.push_back({p, PowerWeight(p.s_bar), PowerWeight(p.s), PowerWeight(p.s_bar + 1.0)});
-    cutoff_ = std::max({cutoff_, p.cutoff, p.gamma_far > 0.0 ? p.cutoff_far : 0.0});
+    table_.push_back({p, PowerWeight(p.s_bar), PowerWeight(p.s_bar + 1.0), Friction(p.friction())});
+    cutoff_ = std::max({cutoff_, p.cutoff, p.friction().reach()});
     conservative_ = conservative_ || p.a > 0.0;
     thermal_ = thermal_ || p.kT > 0.0;
   }
 }
 
 template <int D>
+DpdModel<D>::DpdModel(int species, std::vector<DpdParameters> parameters)
+    : DpdModel(species, parameters,
+               {.p = parameters.empty() ? DpdParameters{} : parameters.front()}) {}
+
+template <int D>
 PairTerms DpdModel<D>::terms(double r, Site site_i, Site site_j) const {
-  const Entry& entry = table_[static_cast<std::size_t>(site_i.species * species_ + site_j.species)];
-  const DpdParameters& p = entry.p;
+  const Entry& of = entry(site_i, site_j);
+  const DpdParameters& p = of.p;
   PairTerms t;
-  t.kT = p.kT;
+  of.friction(r, t);
   const double x = 1.0 - r / p.cutoff;
-  if (x > 0.0) {
-    const double w_d = entry.w_d(x);
-    t.zeta_par = p.gamma * w_d;
-    t.zeta_perp = p.gamma_perp * w_d;
-    if (p.a > 0.0) {
-      t.f_c = p.a * entry.w_c(x);
-      t.k_c = p.s_bar / p.cutoff * (t.f_c / x);
-      t.u = p.a * p.cutoff / (p.s_bar + 1.0) * entry.energy(x);
-    }
+  if (x > 0.0 && p.a > 0.0) {
+    t.f_c = p.a * of.w_c(x);
+    t.k_c = p.s_bar / p.cutoff * (t.f_c / x);
+    t.u = p.a * p.cutoff / (p.s_bar + 1.0) * of.energy(x);
   }
-  if (p.gamma_far > 0.0 && r < p.cutoff_far)
-    t.zeta_par += p.gamma_far * entry.w_d(1.0 - r / p.cutoff_far);
   return t;
+}
+
+template <int D>
+ModelParameters DpdModel<D>::parameters() const {
+  const DpdParameters& p = fluid_.p;
+  return {"DPD parameters",
+          {{"a", p.a},
+           {"s_bar", p.s_bar},
+           {"gamma", p.gamma},
+           {"sigma", std::sqrt(2.0 * p.gamma * p.kT)},
+           {"s", p.s}}};
+}
+
+template <int D>
+void DpdModel<D>::save(StateWriter& out) const {
+  if (fluid_.calibration)
+    out.write("calibrated_gamma", std::vector<double>{fluid_.calibration->fluid.gamma});
+}
+
+template <int D>
+void DpdModel<D>::check(const StateReader& in) const {
+  const auto& calibration = fluid_.calibration;
+  const bool same = in.has("calibrated_gamma") == calibration.has_value() &&
+                    (!calibration || in.read_doubles("calibrated_gamma") ==
+                                         std::vector<double>{calibration->fluid.gamma});
+  if (!same)
+    throw ConfigError(
+        "the checkpoint has another friction than the file of fluid.calibration gives now: "
+        "restore that file");
 }
 
 template <int D>

@@ -1,16 +1,35 @@
 #include "odpd/scene/scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "odpd/core/error.h"
 #include "odpd/scene/fill.h"
 
 namespace odpd {
 
+namespace {
+
+template <int D>
+std::shared_ptr<const PairModel<D>> model_of(const SceneSettings<D>& settings) {
+  if (settings.model == nullptr) throw ConfigError("the scene has no pair model");
+  const int species = settings.model->species();
+  if (species != 0 && static_cast<std::size_t>(species) != settings.species.size())
+    throw ConfigError(
+        fmt::format("the pair model is of {} species, the scene has {}: make it for all of them",
+                    species, settings.species.size()));
+  return settings.model;
+}
+
+}  // namespace
+
 template <int D>
 Scene<D>::Scene(SceneSettings<D> settings)
     : settings_(std::move(settings)),
-      model_(std::make_unique<DpdModel<D>>(static_cast<int>(settings_.species.size()),
-                                           settings_.pairs)) {
+      model_(model_of(settings_)),
+      pair_moments_(odpd::pair_moments(*model_, settings_.species.size())),
+      largest_kT_(odpd::largest_kT(pair_moments_)) {
   place_walls(settings_, particles_);
   particles_.walls = static_cast<std::int32_t>(settings_.walls.size());
   body_kind_ = place_bodies(settings_.bodies, settings_.box, fluid_low(), fluid_high(),
@@ -56,13 +75,6 @@ void Scene<D>::join_molecules() {
   if (!bonds_.empty())
     model_ = std::make_unique<BondedModel<D>>(std::move(model_), bonds_,
                                               frames_of(settings_.molecules, molecules_));
-}
-
-template <int D>
-double Scene<D>::largest_kT() const {
-  double kT = 0.0;
-  for (const DpdParameters& p : settings_.pairs) kT = std::max(kT, p.kT);
-  return kT;
 }
 
 template <int D>

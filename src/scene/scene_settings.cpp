@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "odpd/scene/drive_keys.h"
-#include "odpd/scene/physical_keys.h"
 #include "odpd/scene/vector_key.h"
 
 namespace odpd {
@@ -26,28 +25,6 @@ Box<D> read_box(const Config& config) {
     config.fail("periodic", fmt::format("{} flags are needed, there are {}", D, periodic.size()));
   for (std::size_t c = 0; c < D; ++c) box.periodic[c] = periodic[c];
   return box;
-}
-
-// Keys of one pair of species, `base` where they are absent.
-DpdParameters read_pair(const Config& config, const DpdParameters& base, bool required) {
-  DpdParameters p = base;
-  p.kT = required ? config.non_negative("kT") : base.kT;
-  p.cutoff = config.positive("cutoff", base.cutoff);
-  p.a = required ? config.non_negative("a") : config.non_negative("a", base.a);
-  p.s_bar = config.positive("s_bar", base.s_bar);
-  p.s = config.non_negative("s", base.s);
-  p.gamma_perp = config.non_negative("gamma_perp", base.gamma_perp);
-  if (config.has("gamma") && config.has("sigma"))
-    config.fail("sigma", "give gamma or sigma, never both: sigma^2 = 2 gamma kT");
-  if (config.has("sigma")) {
-    const double sigma = config.positive("sigma");
-    if (p.kT == 0.0)
-      config.fail("sigma", "at kT = 0 there is no noise to set the friction by: give gamma");
-    p.gamma = sigma * sigma / (2.0 * p.kT);
-  } else if (required || config.has("gamma")) {
-    p.gamma = config.positive("gamma");
-  }
-  return p;
 }
 
 std::vector<SpeciesSettings> read_species(const Config& config) {
@@ -83,6 +60,23 @@ std::vector<SpeciesSettings> read_species(const Config& config) {
   return species;
 }
 
+// rho = n m gives the density where mass is given, and the mass where the density n is.
+double density_of_rho(const Config& fluid) {
+  if (!fluid.has("mass"))
+    fluid.fail("rho", "is density times mass: give two of rho, density (or count) and mass");
+  const double mass = fluid.non_negative("mass");
+  if (mass == 0.0)
+    fluid.fail("rho", "is density times mass, so 0 at mass = 0: give density (or count) instead");
+  return fluid.positive("rho") / mass;
+}
+
+double mass_of_rho(const Config& fluid, double density) {
+  if (fluid.has("mass"))
+    fluid.fail("rho",
+               "is density times mass: give two of rho, density (or count) and mass, never three");
+  return fluid.positive("rho") / density;
+}
+
 template <int D>
 void read_amount(const Config& fluid, SceneSettings<D>& scene) {
   if (fluid.has("density") && fluid.has("count"))
@@ -102,21 +96,18 @@ void read_amount(const Config& fluid, SceneSettings<D>& scene) {
   }
 }
 
-template <int D>
-void read_pairs(const Config& config, SceneSettings<D>& scene) {
-  const std::size_t n = scene.species.size();
-  scene.pairs.assign(n * n, scene.fluid);
+std::vector<FluidKeys::Pair> read_pairs(const Config& config,
+                                        const std::vector<SpeciesSettings>& species) {
+  std::vector<FluidKeys::Pair> pairs;
   for (const Config& entry : config.tables("pair")) {
     const std::vector<std::string> names = entry.texts("species");
     if (names.size() != 2) entry.fail("species", "two names are needed");
-    const auto a =
-        static_cast<std::size_t>(species_index(scene.species, entry, "species", names[0]));
-    const auto b =
-        static_cast<std::size_t>(species_index(scene.species, entry, "species", names[1]));
-    const DpdParameters p = read_pair(entry, scene.fluid, false);
-    scene.pairs[a * n + b] = p;
-    scene.pairs[b * n + a] = p;
+    const auto index = [&](const std::string& name) {
+      return static_cast<std::size_t>(species_index(species, entry, "species", name));
+    };
+    pairs.push_back({entry, index(names[0]), index(names[1])});
   }
+  return pairs;
 }
 
 // Needs the walls, as the volume between them turns a count into a density.
@@ -124,7 +115,6 @@ template <int D>
 void read_fluid(const Config& config, const std::optional<Calibration>& calibration,
                 SceneSettings<D>& scene) {
   const Config fluid = config.table("fluid");
-  fluid.choice("model", {"dpd"}, "dpd");
   read_amount(fluid, scene);
   const double density = scene.count > 0 ? static_cast<double>(scene.count) / scene.fluid_volume()
                          : scene.start == StartKind::file ? scene.start_density
@@ -132,32 +122,12 @@ void read_fluid(const Config& config, const std::optional<Calibration>& calibrat
   const bool amount = fluid.has("density") || fluid.has("count");
   scene.mass =
       fluid.has("rho") && amount ? mass_of_rho(fluid, density) : fluid.non_negative("mass", 0.0);
-  scene.physical_inputs = read_physical_inputs(fluid);
-  if (scene.physical_inputs.any() && density == 0.0)
-    fluid.fail("eta",
-               "physical inputs need the density, which a start file says too late: give "
-               "fluid.density or fluid.count, in agreement with the file");
-  DpdParameters base =
-      scene.physical_inputs.any()
-          ? read_physical_fluid<D>(fluid, scene.physical_inputs, density, scene.mass)
-          : read_pair(fluid, DpdParameters{}, true);
-  if (fluid.has("rattler_friction")) {
-    const Config far = fluid.table("rattler_friction");
-    base.gamma_far = far.positive("gamma");
-    base.cutoff_far = far.positive("cutoff");
-    if (base.cutoff_far <= base.cutoff)
-      far.fail("cutoff",
-               fmt::format(
-                   "must be larger than fluid.cutoff = {}, to reach particles without neighbours",
-                   base.cutoff));
-  }
-  if (names_calibration(fluid)) {
-    base.gamma = calibrated_friction(fluid, calibration, scene.physical_inputs.eta,
-                                     {D, density, scene.mass, base});
-    scene.calibration = calibration;
-  }
-  scene.fluid = base;
-  read_pairs(config, scene);
+  scene.model = read_pair_model<D>({.fluid = fluid,
+                                    .pairs = read_pairs(config, scene.species),
+                                    .species = scene.species.size(),
+                                    .density = density,
+                                    .mass = scene.mass,
+                                    .calibration = calibration});
 }
 
 // A drag relative to the frame at rest screens flow beyond sqrt(eta/(n zeta_0)) and takes momentum away.

@@ -8,6 +8,7 @@
 #include "odpd/dynamics/clock.h"
 #include "odpd/dynamics/step_record.h"
 #include "odpd/operator/edge_sums.h"
+#include "odpd/pairs/dpd.h"
 #include "odpd/scene/scene.h"
 #include "support/points.h"
 

@@ -128,7 +128,7 @@ TEST_F(MakeObservers, RefuseWhatTheSceneHasNot) {
   };
   const auto s = records::periodic<2>(5.0, {{{1.0, 1.0}}, {{3.0, 3.0}}});
   auto cold = s, heavy = s, dragged = s;
-  cold.pairs[0].kT = 0.0;
+  cold.model = odpd::make_dpd<2>({.kT = 0.0});
   heavy.mass = 1.0;
   dragged.zeta_0 = 0.1;
   refused(cold, "viscosity", {"kind", "move a wall", "body_force.wave"});

@@ -26,7 +26,7 @@ SceneSettings<D> channel() {
   for (int k = 0; k < bins; ++k) r[static_cast<std::size_t>(k)][1] = 1.25 + 0.5 * k;
   auto s = records::periodic<D>(6.0, r);
   records::add_walls(s, 1.0);
-  s.pairs[0].a = 0.0;
+  s.model = odpd::make_dpd<D>({.a = 0.0});
   return s;
 }
 

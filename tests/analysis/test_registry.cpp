@@ -74,7 +74,7 @@ class Registry : public ::testing::Test {
   Registry()
       : scene(everything()),
         dynamics(scene.box(), scene.particles(), scene.model(), scene,
-                 odpd::make_solver({.name = "pcg", .tolerance = 1e-5}), {.seed = 3, .kT = 1.0}),
+                 odpd::make_solver({.name = "pcg", .tolerance = 1e-5}), {.seed = 3}),
         integrator(odpd::make_integrator<2>("trapezoidal")) {}
 
   /// The one observer of these keys besides those that are always there.

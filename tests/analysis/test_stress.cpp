@@ -51,10 +51,7 @@ struct TwoStages {
     r[0][1] = 2.2;
     r[1][0] = 3.6;
     auto s = records::periodic<D>(4.0, r);
-    s.pairs[0].a = 10.0;
-    s.pairs[0].gamma = 2.0;
-    s.pairs[0].s = 1.0;
-    s.pairs[0].kT = 0.5;
+    s.model = odpd::make_dpd<D>({.a = 10.0, .gamma = 2.0, .s = 1.0, .kT = 0.5});
     return s;
   }
   Scene<D> scene;
@@ -115,7 +112,7 @@ TYPED_TEST(StressTest, OfALineIntoAWallThePartInsideCounts) {
   auto s = records::periodic<D>(4.0, r);
   records::add_walls(s, 0.0);
   for (auto& wall : s.walls) wall.layers = {{.depth = 0.1, .count = 0, .spacing = 4.0}};
-  s.pairs[0].a = 10.0;
+  s.model = odpd::make_dpd<D>({.a = 10.0});
   const Scene<D> scene(s);
   auto record = records::record(scene);
   ASSERT_EQ(record.start.network.size(), 1);
@@ -134,8 +131,7 @@ TYPED_TEST(StressTest, AgreesWithThermoAndItsBins) {
   constexpr int D = TypeParam::D;
   const auto r = support::random_points<D>({}, support::uniform_vec<D>(5.0), 700, 2);
   auto s = records::periodic<D>(5.0, r);
-  s.pairs[0].a = 18.5;
-  s.pairs[0].gamma_perp = 2.0;
+  s.model = odpd::make_dpd<D>({.gamma_perp = 2.0});
   const Scene<D> scene(s);
   auto record = records::record(scene);
   record.start.velocity = support::random_vectors<D>(r.size(), 3);

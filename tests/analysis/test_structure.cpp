@@ -41,7 +41,7 @@ TYPED_TEST(StructureTest, AnIdealGasHasNoStructure) {
   const Vec<D> size = support::uniform_vec<D>(4.0);
   auto s = records::periodic<D>(4.0, support::random_points<D>(Vec<D>{}, size, n, 0));
   s.species = {{.name = "a", .fraction = 0.5}, {.name = "b", .fraction = 0.5}};
-  s.pairs.assign(4, s.pairs[0]);
+  s.model = odpd::make_dpd<D>({}, 2);
   const Scene<D> scene(s);
   Rdf<D> rdf({.kind = "rdf", .name = "g"}, 2.0, bins, scene);
   StepRecord<D> record;
@@ -92,7 +92,7 @@ TEST(Rdf, CountsTheParticlesItIsGiven) {
   auto s = records::periodic<2>(
       4.0, support::random_points<2>(Vec<2>{}, support::uniform_vec<2>(4.0), 40, 3));
   s.species = {{.name = "a", .fraction = 0.5}, {.name = "b", .fraction = 0.5}};
-  s.pairs.assign(4, s.pairs[0]);
+  s.model = odpd::make_dpd<2>({}, 2);
   auto others = s;
   others.start_species.assign(40, 0);
   std::fill_n(others.start_species.begin(), 5, 1);

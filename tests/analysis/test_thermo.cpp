@@ -22,8 +22,7 @@ TYPED_TEST(ThermoTest, APair) {
   std::vector<Vec<D>> r(2, support::uniform_vec<D>(0.2));
   r[1][0] = 3.6;  // across the border of a box of 4
   auto s = records::periodic<D>(4.0, r);
-  s.pairs[0].a = 10.0;
-  s.pairs[0].kT = 0.5;
+  s.model = odpd::make_dpd<D>({.a = 10.0, .kT = 0.5});
   const Scene<D> scene(s);
   Thermo<D> thermo({.kind = "thermo", .name = "thermo"}, scene);
   thermo.measure(Clock{}, scene.particles(), records::record(scene));
@@ -47,8 +46,7 @@ TYPED_TEST(ThermoTest, AParticleBetweenWalls) {
     wall.layers = {{.depth = 0.0, .count = 0, .spacing = 4.0}};  // one particle, at 2, 1, 2
     wall.stiffness = 50.0;
   }
-  s.pairs[0].a = 10.0;
-  s.pairs[0].kT = 0.5;
+  s.model = odpd::make_dpd<D>({.a = 10.0, .kT = 0.5});
   Scene<D> scene(s);
   ASSERT_EQ(scene.particles().size(), 3);
   scene.particles().position[2][1] = 0.4;  // 0.6 below the wall's particle, 0.6 behind its surface
@@ -70,7 +68,7 @@ TYPED_TEST(ThermoTest, CoincidentParticlesSpoilNoAverage) {
   r[1][0] = 1.6;
   r[2] = r[3] = support::uniform_vec<D>(3.0);
   auto s = records::periodic<D>(4.0, r);
-  s.pairs[0].a = 10.0;
+  s.model = odpd::make_dpd<D>({.a = 10.0});
   const Scene<D> scene(s);
   Thermo<D> thermo({.kind = "thermo", .name = "thermo"}, scene);
   thermo.measure(Clock{}, scene.particles(), records::record(scene));
@@ -84,7 +82,7 @@ TYPED_TEST(ThermoTest, CoincidentParticlesSpoilNoAverage) {
 
 TEST(Thermo, AnIdealGasHasNoConfigurationalTemperature) {
   auto s = records::periodic<2>(4.0, {{{1.0, 1.0}}, {{1.5, 1.0}}});
-  s.pairs[0].a = 0.0;
+  s.model = odpd::make_dpd<2>({.a = 0.0});
   const Scene<2> scene(s);
   Thermo<2> thermo({.kind = "thermo", .name = "thermo"}, scene);
   EXPECT_TRUE(std::isnan(records::mean(records::results(thermo), "pressure"))) << "nothing yet";
@@ -105,8 +103,7 @@ TEST(Thermo, TemperatureOfAHarmonicWell) {
   records::add_walls(s, 0.0);
   s.walls[1].thickness = 2.5;  // the fluid space ends at 1 and 3.5
   s.walls[0].thickness = 1.0;
-  s.pairs[0].a = 0.0;
-  s.pairs[0].kT = kT;
+  s.model = odpd::make_dpd<2>({.a = 0.0, .kT = kT});
   Scene<2> scene(s);
   Thermo<2> thermo({.kind = "thermo", .name = "thermo"}, scene);
   const auto x = support::random_numbers(n, 5);

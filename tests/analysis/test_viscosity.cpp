@@ -67,15 +67,12 @@ TYPED_TEST_SUITE(ViscosityTest, support::Dimensions);
 
 // One particle in the middle of each of eight layers across y, from 0 (or 1, between walls) to 8 (9).
 template <int D>
-odpd::SceneSettings<D> layers(double from) {
+odpd::SceneSettings<D> layers(double from, double kT = 1.0) {
   std::vector<Vec<D>> r(8, support::uniform_vec<D>(2.0));
   for (int k = 0; k < 8; ++k) r[static_cast<std::size_t>(k)][1] = from + 0.5 + k;
   auto s = records::periodic<D>(8.0, r);
   s.box.size[1] += 2.0 * from;
-  s.pairs[0].a = 0.0;
-  s.pairs[0].gamma = 2.0;
-  s.pairs[0].s = 0.0;
-  s.pairs[0].cutoff = 0.9;
+  s.model = odpd::make_dpd<D>({.a = 0.0, .gamma = 2.0, .s = 0.0, .cutoff = 0.9, .kT = kT});
   return s;
 }
 
@@ -128,7 +125,10 @@ TYPED_TEST(ViscosityTest, OfOppositeRegions) {
   f[0] = 0.3;
   s.force_regions = {{.axis = 1, .from = 0.0, .to = 4.0, .force = f},
                      {.axis = 1, .from = 4.0, .to = 8.0, .force = -1.0 * f}};
-  s.pairs[0].cutoff = 0.25;  // all four layers of the first region are fitted
+  s.model = odpd::make_dpd<D>({.a = 0.0,
+                               .gamma = 2.0,
+                               .s = 0.0,
+                               .cutoff = 0.25});  // all four layers of the first region are fitted
   const Scene<D> scene(s);
   EXPECT_EQ(odpd::viscosity_scene(scene).kind, ViscosityScene::Kind::parabola);
   auto viscosity = make_viscosity(scene);
@@ -144,8 +144,7 @@ TYPED_TEST(ViscosityTest, OfShearBetweenWalls) {
   auto s = layers<D>(1.0);
   records::add_walls(s, 2.0);
   for (auto& wall : s.walls) wall.layers = {{.depth = 0.5, .count = 0, .spacing = 8.0}};
-  s.pairs[0].cutoff = 1.1;
-  s.pairs[0].gamma_perp = 2.0;
+  s.model = odpd::make_dpd<D>({.a = 0.0, .gamma = 2.0, .gamma_perp = 2.0, .s = 0.0, .cutoff = 1.1});
   Scene<D> scene(s);
   // One particle per layer and wall, all in a column.
   for (auto& r : scene.particles().position)
@@ -175,9 +174,7 @@ TYPED_TEST(ViscosityTest, ScenesAreTold) {
     return odpd::viscosity_scene(Scene<D>(s)).kind;
   };
   EXPECT_EQ(kind(layers<D>(0.0)), Kind::at_rest);
-  auto cold = layers<D>(0.0);
-  cold.pairs[0].kT = 0.0;
-  EXPECT_EQ(kind(cold), Kind::none);
+  EXPECT_EQ(kind(layers<D>(0.0, 0.0)), Kind::none);
   auto channel = layers<D>(1.0);
   records::add_walls(channel, 0.0);
   EXPECT_EQ(kind(channel), Kind::none);

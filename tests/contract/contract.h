@@ -13,6 +13,7 @@
 #include "odpd/core/parallel.h"
 #include "odpd/dynamics/dynamics.h"
 #include "odpd/operator/edge_sums.h"
+#include "odpd/pairs/dpd.h"
 #include "odpd/pairs/noise.h"
 #include "odpd/scene/scene.h"
 #include "support/network.h"
@@ -81,13 +82,13 @@ odpd::SceneSettings<D> settings(Model model, Geometry geometry, double length) {
   s.seed = 5;
   s.box.size = support::uniform_vec<D>(length);
   s.box.periodic.fill(geometry != Geometry::open);
-  odpd::DpdParameters& p = s.pairs[0];
-  p.kT = 0.7;
+  odpd::DpdParameters p{.kT = 0.7};
   if (model == Model::transverse) p.gamma_perp = 1.5;
   if (model == Model::far_friction) {
     p.gamma_far = 0.1;
     p.cutoff_far = 1.5;
   }
+  s.model = odpd::make_dpd<D>(p);
   if (geometry == Geometry::sheared) {
     s.box.shear = odpd::Shear{.flow = 0, .gradient = D - 1, .rate = 2.0, .start = 0.37 * length};
     s.box = s.box.at(0.0);
@@ -219,6 +220,13 @@ void expect_noise_covariance(const Instant<D>& instant, const odpd::System& syst
   EXPECT_NEAR(pooled, 1.0, bound);
   EXPECT_GT(std::abs(1.1 * pooled - 1.0), bound) << "the test would not notice a factor of 1.1";
   EXPECT_GT(std::abs(pooled / 1.1 - 1.0), bound) << "the test would not notice a factor of 1/1.1";
+}
+
+/// |a - b|/|b|.
+inline double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> difference = a;
+  for (std::size_t k = 0; k < a.size(); ++k) difference[k] -= b[k];
+  return support::norm(difference) / support::norm(b);
 }
 
 }  // namespace contract

@@ -109,12 +109,6 @@ INSTANTIATE_TEST_SUITE_P(All, Unknowns,
                                   std::to_string(std::get<3>(test.param)) + "D";
                          });
 
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  std::vector<double> difference = a;
-  for (std::size_t k = 0; k < a.size(); ++k) difference[k] -= b[k];
-  return support::norm(difference) / support::norm(b);
-}
-
 /// E^T x.
 std::vector<double> sums(const Matrix& E, const std::vector<double>& x) {
   std::vector<double> s(E.columns, 0.0);
@@ -143,7 +137,7 @@ TEST_P(Unknowns, EverySolverFindsTheDenseSolution) {
   const double residual = contract::true_residual(system, toy.load, x);
   EXPECT_LE(residual, 1.01 * options().tolerance);
   EXPECT_NEAR(report.residual, residual, 0.01 * residual + 1e-15);
-  EXPECT_LT(distance(x, exact), solver().starts_with("picard") ? 1e-3 : 1e-8);
+  EXPECT_LT(contract::distance(x, exact), solver().starts_with("picard") ? 1e-3 : 1e-8);
   for (const double sum : sums(E, x)) EXPECT_NEAR(sum, 0.0, 1e-12 * support::norm(x));
 }
 
@@ -177,7 +171,8 @@ TEST_P(Unknowns, AWrongChoiceOfComponentsShows) {
   engine->bind(wrong);
   std::vector<double> x(toy.load.size(), 0.0);
   const SolveReport report = engine->solve(toy.load, x);
-  EXPECT_TRUE(!report.converged || distance(x, exact) > 1e-2) << distance(x, exact);
+  EXPECT_TRUE(!report.converged || contract::distance(x, exact) > 1e-2)
+      << contract::distance(x, exact);
 }
 
 // Between a hot and a cold layer every temperature lies between theirs, and without sources the heat of one is that of the other.

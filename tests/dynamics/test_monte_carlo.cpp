@@ -271,9 +271,11 @@ TYPED_TEST(MonteCarloTest, KnownParticlesStay) {
 
 TEST(MonteCarlo, RefusesWhatHasNoEquilibrium) {
   const auto check = [](const auto& change, double kT) {
-    Toy<2> toy(4.0, 20, {}, {.kT = kT});
+    Toy<2> toy(4.0, 20);
     toy.particles.group[0] = 1;
+    toy.trap = Trap<2>({.kT = kT});
     change(toy.trap);
+    toy.remake({});
     MonteCarlo<2>().check(*toy.dynamics);
   };
   const auto nothing = [](Trap<2>&) {};

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "odpd/pairs/dpd.h"
 #include "odpd/scene/scene.h"
 
 namespace cases {

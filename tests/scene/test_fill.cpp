@@ -198,7 +198,7 @@ TEST(Fill, StartPositionsMustLieInTheBox) {
 
 TEST(Fill, ABoxBelowTwoCutoffsIsRefused) {
   SceneSettings<3> s = settings<3>(periodic);
-  s.pairs[0].cutoff = 1.6;
+  s.model = odpd::make_dpd<3>({.cutoff = 1.6});
   expect_error<ConfigError>([&] { Scene<3>{s}; }, {"two cutoffs"});
 }
 

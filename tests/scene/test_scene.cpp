@@ -6,6 +6,8 @@
 #include "cases.h"
 #include "odpd/scene/scene.h"
 #include "support/dimensions.h"
+#include "support/errors.h"
+#include "support/pair_functions.h"
 #include "support/points.h"
 
 namespace {
@@ -150,9 +152,28 @@ TEST(Scene, LargestTemperatureOfAnyPair) {
   SceneSettings<2> s = cases::settings<2>(cases::channel);
   s.species.resize(2);
   s.species[0].fraction = s.species[1].fraction = 0.5;
-  s.pairs.assign(4, s.pairs[0]);
-  s.pairs[3].kT = 2.5;
+  const odpd::DpdParameters cool, hot{.kT = 2.5};
+  s.model = std::make_shared<odpd::DpdModel<2>>(2, std::vector{cool, cool, cool, hot});
   EXPECT_EQ(Scene<2>(s).largest_kT(), 2.5);
+}
+
+TEST(Scene, TakesAModelOfOnesOwn) {
+  SceneSettings<2> s = cases::settings<2>(cases::channel);
+  s.model = support::gaussian<2>(18.5, 0.3, 0.6);
+  const Scene<2> scene(s);
+  EXPECT_EQ(scene.model().name(), "function");
+  EXPECT_EQ(scene.largest_kT(), 0.6);
+  EXPECT_NEAR(scene.pair_moments().front().stiffness, 18.5 / 0.3, 1e-12);
+  s.species.resize(3);
+  EXPECT_NO_THROW(Scene<2>{s}) << "it is the same for any species";
+}
+
+TEST(Scene, AModelOfAnotherNumberOfSpeciesIsRefused) {
+  SceneSettings<2> s = cases::settings<2>(cases::channel);
+  s.model = odpd::make_dpd<2>({}, 2);
+  support::expect_error<odpd::ConfigError>([&] { Scene<2>{s}; }, {"2 species", "the scene has 1"});
+  s.model = nullptr;
+  support::expect_error<odpd::ConfigError>([&] { Scene<2>{s}; }, {"no pair model"});
 }
 
 // On a finite set of particles neither a wave nor opposite regions add up to nothing; in a box without walls the rest is

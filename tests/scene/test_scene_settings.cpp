@@ -13,6 +13,13 @@ using odpd::StartKind;
 using support::expect_error;
 using Overrides = std::vector<std::string>;
 
+/// Of a pair of species A, B.
+template <int D>
+const odpd::DpdParameters& dpd(const odpd::SceneSettings<D>& scene, std::int32_t a = 0,
+                               std::int32_t b = 0) {
+  return dynamic_cast<const odpd::DpdModel<D>&>(*scene.model).parameters({a}, {b});
+}
+
 void refuse(const std::string& text, const Overrides& overrides,
             std::initializer_list<const char*> parts) {
   expect_error<ConfigError>([&] { settings<2>(text, overrides); }, parts);
@@ -28,10 +35,11 @@ TEST(SceneSettings, ReadsAChannel) {
   EXPECT_EQ(scene.count, 0);
   EXPECT_EQ(scene.start, StartKind::random);
   EXPECT_EQ(scene.relax_sweeps, 100);
-  ASSERT_EQ(scene.pairs.size(), 1u);
-  EXPECT_EQ(scene.pairs[0].a, 18.75);
-  EXPECT_EQ(scene.pairs[0].gamma, 4.5);
-  EXPECT_EQ(scene.pairs[0].s, 0.5);
+  EXPECT_EQ(scene.model->species(), 1);
+  EXPECT_EQ(scene.model->name(), "dpd");
+  EXPECT_EQ(dpd(scene).a, 18.75);
+  EXPECT_EQ(dpd(scene).gamma, 4.5);
+  EXPECT_EQ(dpd(scene).s, 0.5);
   ASSERT_EQ(scene.walls.size(), 2u);
   EXPECT_EQ(scene.wall_at(1, false), 0);
   EXPECT_EQ(scene.wall_at(1, true), 1);
@@ -57,9 +65,9 @@ cutoff = 2.0
 [start]
 from = "lattice"
 )");
-  EXPECT_DOUBLE_EQ(scene.pairs[0].gamma, 9.0);  // sigma^2 / (2 kT)
-  EXPECT_EQ(scene.pairs[0].gamma_far, 0.1);
-  EXPECT_EQ(scene.pairs[0].cutoff_far, 2.0);
+  EXPECT_DOUBLE_EQ(dpd(scene).gamma, 9.0);  // sigma^2 / (2 kT)
+  EXPECT_EQ(dpd(scene).gamma_far, 0.1);
+  EXPECT_EQ(dpd(scene).cutoff_far, 2.0);
   EXPECT_EQ(scene.count, 77);
   EXPECT_EQ(scene.start, StartKind::lattice);
   EXPECT_EQ(scene.relax_sweeps, 0);
@@ -88,19 +96,23 @@ a = 60.0
 
 TEST(SceneSettings, PhysicalInputsSetTheFluidAndPairsOverride) {
   const auto scene = settings<2>(by_properties);
-  const auto theory = odpd::kinetic_theory<2>(scene.fluid, 4.0, 0.0);
+  const odpd::DpdParameters& fluid = odpd::dpd_fluid(*scene.model)->p;
+  const auto theory =
+      odpd::kinetic_theory<2>(odpd::pair_moments(*odpd::make_dpd<2>(fluid), 1), {1.0}, 4.0, 0.0);
   EXPECT_NEAR(theory.eta_friction, 3.0, 1e-12);
   EXPECT_NEAR(theory.kappa_inverse, 20.0, 1e-12);
-  EXPECT_EQ(scene.pairs[0], scene.fluid);
-  EXPECT_EQ(scene.pairs[1].a, 60.0);
-  EXPECT_EQ(scene.pairs[1].gamma, scene.fluid.gamma);
+  EXPECT_EQ(dpd(scene), fluid);
+  EXPECT_EQ(dpd(scene, 0, 1).a, 60.0);
+  EXPECT_EQ(dpd(scene, 0, 1).gamma, fluid.gamma);
 }
 
 TEST(SceneSettings, TheResolvedCaseHoldsPhysicalInputsAndNothingDerived) {
   const odpd::Config first = odpd::Config::from_text(by_properties, "case.toml");
   const auto scene = odpd::read_scene_settings<2>(first);
   EXPECT_NO_THROW(first.reject_unread());
-  EXPECT_EQ(settings<2>(first.resolved()).pairs, scene.pairs);
+  const auto again = settings<2>(first.resolved());
+  for (const auto& [a, b] : {std::pair{0, 0}, std::pair{0, 1}, std::pair{1, 1}})
+    EXPECT_EQ(dpd(again, a, b), dpd(scene, a, b));
 }
 
 TEST(SceneSettings, PhysicalInputsCountParticlesBetweenTheWalls) {
@@ -113,7 +125,19 @@ TEST(SceneSettings, PhysicalInputsCountParticlesBetweenTheWalls) {
   const auto by_density = settings<2>(bare, {"fluid.eta=3.0"});
   const auto by_count =
       settings<2>(without("density = 4.0\n", bare), {"fluid.eta=3.0", "fluid.count=400"});
-  EXPECT_DOUBLE_EQ(by_count.fluid.gamma, by_density.fluid.gamma);
+  EXPECT_DOUBLE_EQ(dpd(by_count).gamma, dpd(by_density).gamma);
+}
+
+TEST(SceneSettings, RhoIsDensityTimesMass) {
+  const std::string fluid =
+      "[box]\nsize = [4.0, 5.0]\nperiodic = [true, true]\n"
+      "[fluid]\na = 1.0\ngamma = 1.0\nkT = 1.0\nrho = 8.0\n";
+  EXPECT_DOUBLE_EQ(settings<2>(fluid + "mass = 2.0\n").density, 4.0);
+  EXPECT_DOUBLE_EQ(settings<2>(fluid + "density = 4.0\n").mass, 2.0);
+  EXPECT_DOUBLE_EQ(settings<2>(fluid + "count = 80\n").mass, 2.0);
+  refuse(fluid, {}, {"fluid.rho", "two of"});
+  refuse(fluid + "mass = 0.0\n", {}, {"fluid.rho", "mass = 0"});
+  refuse(fluid + "mass = 1.0\ndensity = 4.0\n", {}, {"fluid.rho", "never three"});
 }
 
 TEST(SceneSettings, PairsOfSpeciesInheritFromTheFluid) {
@@ -128,12 +152,12 @@ fraction = 0.25
 species = ["water", "oil"]
 a = 60.0
 )");
-  ASSERT_EQ(scene.pairs.size(), 4u);
-  EXPECT_EQ(scene.pairs[0].a, 18.75);
-  EXPECT_EQ(scene.pairs[1].a, 60.0);
-  EXPECT_EQ(scene.pairs[2].a, 60.0);
-  EXPECT_EQ(scene.pairs[1].gamma, 4.5);
-  EXPECT_EQ(scene.pairs[3].a, 18.75);
+  EXPECT_EQ(scene.model->species(), 2);
+  EXPECT_EQ(dpd(scene).a, 18.75);
+  EXPECT_EQ(dpd(scene, 0, 1).a, 60.0);
+  EXPECT_EQ(dpd(scene, 1, 0).a, 60.0);
+  EXPECT_EQ(dpd(scene, 0, 1).gamma, 4.5);
+  EXPECT_EQ(dpd(scene, 1, 1).a, 18.75);
 }
 
 TEST(SceneSettings, RefusesBadFluids) {

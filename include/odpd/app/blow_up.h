@@ -4,18 +4,20 @@
 // H long), and F_b the forces on bodies (a torque as one at its edge, or at r_c), a state is judged bad when
 //
 //   energy per particle      U/N > b (U_0 + d kT + |f| H + sum F_b r_c/N),  U_0 the larger of that at the start and of a
-//                            random arrangement of the same density, f the body force
+//                            random arrangement of the same density, of hard cores one that leaves out pairs with u > 10 kT
+//                            (pairs/pair_moments.h); f the body force
 //   kinetic temperature      of pairs within the cutoff, m <|v_i - v_j|^2>/(2 d) > b (kT + U_0 + m u^2)(1 + 10/n), with n degrees
 //                            of freedom: a flow common to both does not count, nor does a small system's scatter
 //   configurational          sum |F_i|^2 > b (kT (L + 3 S) + N F_u^2 + sum F_b^2), L = sum lap_i U, S^2 = sum (lap_i U)^2, F_u the
 //   temperature              drag that the drive can cause on a particle; at equilibrium <sum |F|^2> = kT <L>, and where
 //                            particles lie at random L vanishes (soft repulsion: their energy is hardly raised then).
-//                            From the first state that passes on, as an unrelaxed start does not; kT > 0 and a > 0 only
+//                            From the first state that passes on, as an unrelaxed start does not; kT > 0 and f_c != 0 only
 //   jumps                    more than half of the pairs within the cutoff moved by more than it relative to each other in
-//                            the last step; only where a r_c >= 10 kT, as weak repulsion does not mind
+//                            the last step; only where the largest |f_c| r_c >= 10 kT, as weak repulsion does not mind
 //
 // No sound run comes near any of them; a smaller b makes the first three more severe.
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "odpd/core/archive.h"
@@ -24,12 +26,7 @@
 
 namespace odpd {
 
-/// 0.2 gamma r_c/(a max(1, s_bar)) of the stiffest pair: explicit repulsion is accurate to about this dt, and garbage from
-/// five times that; with mass at least a tenth of sqrt(m r_c/a). Infinite where nothing repels.
-template <int D>
-double explicit_step_limit(const SceneSettings<D>& scene);
-
-/// Whether that limit concerns this integrator.
+/// Whether explicit_step_limit (pairs/pair_moments.h) concerns this integrator.
 bool repulsion_is_explicit(const IntegratorSettings& integrator);
 
 template <int D>
@@ -62,6 +59,7 @@ class BlowUpWatch {
   std::string judge_temperatures(const Stage<D>& stage, const Pairs& pairs,
                                  const std::vector<double>& force_squared,
                                  const std::vector<double>& laplacian);
+  std::optional<double> repulsion_limit() const;
   double friction_limit(const IntegratorSettings& integrator, const Stage<D>& stage) const;
   double fluid_depth() const;
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "odpd/app/calibration.h"
-#include "odpd/app/viscosity_run.h"
+#include "odpd/app/calibration_run.h"
 #include "odpd/core/config.h"
-#include "odpd/scene/calibration.h"
+#include "odpd/pairs/calibration.h"
 
 namespace odpd {
 

@@ -46,10 +46,15 @@ class BondedModel : public PairModel<D> {
   /// kT of a bond's edge is that of its pair. Throws ConfigError: parameters out of range, a bond of a particle with itself,
   /// or two of one pair.
   /// Each of the frames has its bonds among them.
-  BondedModel(std::unique_ptr<PairModel<D>> pairs, std::vector<Bond> bonds,
+  BondedModel(std::shared_ptr<const PairModel<D>> pairs, std::vector<Bond> bonds,
               std::vector<SiteFrame<D>> frames = {});
 
+  std::string name() const override { return pairs_->name(); }
+  int species() const override { return pairs_->species(); }
   double cutoff() const override { return pairs_->cutoff(); }
+  std::vector<double> kinks(Site site_i, Site site_j) const override {
+    return pairs_->kinks(site_i, site_j);
+  }
   PairTerms pair(double r, Site site_i, Site site_j) const override {
     return pairs_->pair(r, site_i, site_j);
   }
@@ -80,7 +85,7 @@ class BondedModel : public PairModel<D> {
   double frame_energy(std::int64_t id, const Vec<D>& r, const Box<D>& box,
                       const Particles<D>& particles) const;
 
-  std::unique_ptr<PairModel<D>> pairs_;
+  std::shared_ptr<const PairModel<D>> pairs_;
   std::vector<Bond> bonds_;
   std::vector<SiteFrame<D>> frames_;  // by their first identities
   bool excludes_ = false;

@@ -17,15 +17,19 @@ template <int D>
 void add_to_ends(const PairNetwork<D>& network, std::span<const double> value,
                  std::vector<double>& sum);
 
-/// The second phase. Pairs that are no edges count as well, with the distances they have at this moment: those inside a body
-/// stay, but not to the last bit, and those of two walls or bodies of known velocity may change.
+/// The second phase, d and psi. Pairs that are no edges count as well, with the distances they have at this moment: those
+/// inside a body stay, but not to the last bit, and those of two walls or bodies of known velocity may change.
 template <int D, class Functions>
 void sum_densities(const Functions& functions, double cutoff, const PairList<D>& list,
                    const Box<D>& box, std::span<const Vec<D>> positions,
                    const Particles<D>& particles, PairNetwork<D>& network) {
   DensityColumns& columns = network.densities;
   const auto particle_count = static_cast<std::size_t>(network.particles);
-  columns.d.assign(particle_count, 0.0);
+  columns.d.resize(particle_count);
+  parallel_for(network.particles, [&](std::int64_t particle) {
+    const auto i = static_cast<std::size_t>(particle);
+    columns.d[i] = functions.self(site_of(particles, i));
+  });
   const auto add = [&](const PairNetwork<D>& pairs) {
     columns.resize(particle_count, static_cast<std::size_t>(pairs.size()));
     parallel_for(pairs.size(), [&](std::int64_t edge) {
@@ -42,9 +46,9 @@ void sum_densities(const Functions& functions, double cutoff, const PairList<D>&
   write_rigid_geometry(list, cutoff, box, positions, particles, rigid);
   if (rigid.size() > 0) add(rigid);
   add(network);
+  // Between the phases: here ranks would fetch d of the particles that others own.
   parallel_for(network.particles, [&](std::int64_t particle) {
     const auto i = static_cast<std::size_t>(particle);
-    columns.d[i] += functions.self(site_of(particles, i));
     const Derivatives psi = functions.energy(site_of(particles, i, columns.d[i]));
     columns.psi[i] = psi.value;
     columns.psi_1[i] = psi.first;
@@ -64,7 +68,6 @@ void write_density_edges(const Functions& functions, const Terms& terms, double 
       list, cutoff, box, positions, particles, [](PairNetwork<D>&, std::size_t, std::size_t) {},
       network);
   sum_densities(functions, cutoff, list, box, positions, particles, network);
-  // Here a rank would fetch the densities of the particles that others own.
   const DensityColumns& columns = network.densities;
   const auto site = [&](std::size_t i) { return site_of(particles, i, columns.d[i]); };
   constexpr std::int64_t at_a_time = 256;

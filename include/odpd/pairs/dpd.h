@@ -8,56 +8,86 @@
 // range, gamma_far (1 - r/r_far)^s added to zeta_par, which keeps R regular where particles lose their neighbours.
 // Both carry their own noise, since the noise of an edge follows from its friction.
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "odpd/pairs/calibration.h"
 #include "odpd/pairs/pair_model.h"
+#include "odpd/pairs/physical_inputs.h"
 #include "odpd/pairs/weight.h"
 
 namespace odpd {
 
-/// Parameters of one pair of species.
-struct DpdParameters {
-  double a = 18.5;          ///< repulsion (force)
-  double s_bar = 1.0;       ///< exponent of w_C
-  double gamma = 4.5;       ///< friction along the line of centres (mass/time)
-  double gamma_perp = 0.0;  ///< friction across it (mass/time)
-  double s = 0.5;           ///< exponent of w_D
-  double cutoff = 1.0;      ///< r_c (length)
-  double kT = 1.0;          ///< temperature (energy)
-  double gamma_far = 0.0;   ///< weak friction of longer range (mass/time)
-  double cutoff_far = 0.0;  ///< its range r_far (length)
-
-  friend bool operator==(const DpdParameters&, const DpdParameters&) = default;
+/// What [fluid] says of a DPD fluid, before any [[pair]].
+struct DpdFluid {
+  DpdParameters p;
+  PhysicalInputs asked{};                    ///< in place of parameters; may be none
+  std::optional<Calibration> calibration{};  ///< where gamma comes from it
 };
 
 template <int D>
 class DpdModel : public PairModel<D> {
  public:
-  /// `parameters[A * species + B]`, symmetric in A and B. Throws ConfigError for values out of range and for
-  /// another table.
+  /// `parameters[A * species + B]`, symmetric in A and B; `fluid` is for reports. Throws ConfigError for values out of range
+  /// and for another table.
+  DpdModel(int species, std::vector<DpdParameters> parameters, DpdFluid fluid);
+  /// The fluid is that of the first species.
   DpdModel(int species, std::vector<DpdParameters> parameters);
 
+  std::string name() const override { return "dpd"; }
+  int species() const override { return species_; }
   double cutoff() const override { return cutoff_; }
   PairTerms pair(double r, Site site_i, Site site_j) const override {
     return terms(r, site_i, site_j);
+  }
+  std::vector<double> kinks(Site site_i, Site site_j) const override {
+    return parameters(site_i, site_j).friction().kinks();
   }
   void write_edges(const PairList<D>& list, const Box<D>& box, std::span<const Vec<D>> positions,
                    const Particles<D>& particles, PairNetwork<D>& network) const override;
   bool conservative() const override { return conservative_; }
   bool thermal() const override { return thermal_; }
+  ModelParameters parameters() const override;
+  /// The calibrated friction, where there is one.
+  void save(StateWriter& out) const override;
+  void check(const StateReader& in) const override;
+
+  const DpdParameters& parameters(Site site_i, Site site_j) const {
+    return entry(site_i, site_j).p;
+  }
+  const DpdFluid& fluid() const { return fluid_; }
 
  private:
   struct Entry {
     DpdParameters p;
-    PowerWeight w_c, w_d, energy;
+    PowerWeight w_c, energy;
+    Friction friction;
   };
+  const Entry& entry(Site site_i, Site site_j) const {
+    return table_[static_cast<std::size_t>(site_i.species * species_ + site_j.species)];
+  }
   PairTerms terms(double r, Site site_i, Site site_j) const;
 
   int species_;
   std::vector<Entry> table_;
+  DpdFluid fluid_;
   double cutoff_ = 0.0;
   bool conservative_ = false;
   bool thermal_ = false;
 };
+
+/// The same parameters for all pairs of species, as scenes hold it.
+template <int D>
+std::shared_ptr<const DpdModel<D>> make_dpd(const DpdParameters& p, int species = 1) {
+  const auto n = static_cast<std::size_t>(species);
+  return std::make_shared<const DpdModel<D>>(species, std::vector<DpdParameters>(n * n, p));
+}
+
+/// What [fluid] says, of a DPD model; nullptr for another.
+template <int D>
+const DpdFluid* dpd_fluid(const PairModel<D>& model) {
+  const auto* dpd = dynamic_cast<const DpdModel<D>*>(&model);
+  return dpd == nullptr ? nullptr : &dpd->fluid();
+}
 
 }  // namespace odpd

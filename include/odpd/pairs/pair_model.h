@@ -1,7 +1,11 @@
 #pragma once
 // A pair model looks at two particles and writes one edge; nothing else in the code knows which model it was.
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "odpd/core/archive.h"
 #include "odpd/geometry/pair_list.h"
 #include "odpd/pairs/densities.h"
 #include "odpd/pairs/network.h"
@@ -10,15 +14,30 @@
 
 namespace odpd {
 
+/// Numbers of a model for reports: those of [fluid], before any [[pair]].
+struct ModelParameters {
+  std::string heading = "parameters";
+  std::vector<std::pair<std::string, double>> values;
+};
+
+/// Immutable once made: scenes share it.
 template <int D>
 class PairModel {
  public:
   virtual ~PairModel() = default;
+  /// As fluid.model has it; for messages and reports.
+  virtual std::string name() const { return "custom"; }
+  /// How many species it has parameters for; 0: any number, they are all alike.
+  virtual int species() const { return 0; }
   /// Largest distance at which a pair interacts (length).
   virtual double cutoff() const = 0;
-  /// Terms of one pair at distance r >= 0; all zero beyond the cutoff. In a model with densities its energy, force and
-  /// stiffness are those of the pair part u alone, and its friction is that at the densities of the sites.
+  /// Terms of one pair at distance r >= 0; all but kT, which does not depend on r, are zero beyond the cutoff. In a model with
+  /// densities its energy, force and stiffness are those of the pair part u alone, and its friction is that at the densities
+  /// of the sites.
   virtual PairTerms pair(double r, Site site_i, Site site_j) const = 0;
+  /// Where a term of this pair of species is not smooth in r > 0, ascending, the end of its last term among them: integrals over r
+  /// stop there.
+  virtual std::vector<double> kinks(Site, Site) const { return {cutoff()}; }
   /// Replaces `network` by the edges of all pairs of the list closer than the cutoff at these positions.
   virtual void write_edges(const PairList<D>& list, const Box<D>& box,
                            std::span<const Vec<D>> positions, const Particles<D>& particles,
@@ -35,6 +54,10 @@ class PairModel {
                                const Particles<D>&) const {
     return 0.0;
   }
+  virtual ModelParameters parameters() const { return {}; }
+  /// To the checkpoint: what came from files besides the case. `check` throws ConfigError where that is not what it was.
+  virtual void save(StateWriter&) const {}
+  virtual void check(const StateReader&) const {}
 };
 
 }  // namespace odpd

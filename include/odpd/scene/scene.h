@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "odpd/dynamics/surroundings.h"
-#include "odpd/pairs/pair_model.h"
+#include "odpd/pairs/kinetic_theory.h"
 #include "odpd/scene/scene_settings.h"
 
 namespace odpd {
@@ -14,20 +14,23 @@ template <int D>
 class Scene : public Surroundings<D> {
  public:
   /// Builds the model, places walls and fluid, and relaxes overlaps. Throws ConfigError (box too small, more particles
-  /// of a species than the fluid has, start positions outside the box).
+  /// of a species than the fluid has, start positions outside the box, a model for another number of species).
   explicit Scene(SceneSettings<D> settings);
 
   const SceneSettings<D>& settings() const { return settings_; }
   const Box<D>& box() const { return settings_.box; }
   Particles<D>& particles() { return particles_; }
   const Particles<D>& particles() const { return particles_; }
+  /// That of the settings, and the bonds.
   const PairModel<D>& model() const { return *model_; }
 
   /// Ends of the space between the wall surfaces (the box itself where it is periodic).
   Vec<D> fluid_low() const { return settings_.fluid_low(); }
   Vec<D> fluid_high() const { return settings_.fluid_high(); }
   double fluid_volume() const { return settings_.fluid_volume(); }
-  double largest_kT() const;
+  double largest_kT() const { return largest_kT_; }
+  /// What follows from the pairs of species alone: [A * species + B].
+  const std::vector<PairMoments>& pair_moments() const { return pair_moments_; }
   /// Nothing takes momentum from the particles: no walls, no bodies of known motion and no uniform drag.
   bool conserves_momentum() const { return !settings_.held() && settings_.zeta_0 == 0.0; }
   /// Molecules in the order of their identities; their settings by `kind`.
@@ -63,7 +66,9 @@ class Scene : public Surroundings<D> {
   double depth_behind(const WallSettings<D>& wall, const Vec<D>& r) const;
 
   SceneSettings<D> settings_;
-  std::unique_ptr<PairModel<D>> model_;
+  std::shared_ptr<const PairModel<D>> model_;
+  std::vector<PairMoments> pair_moments_;
+  double largest_kT_;
   Particles<D> particles_;
   std::vector<Molecule> molecules_;
   std::vector<Bond> bonds_;

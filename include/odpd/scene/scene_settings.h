@@ -1,17 +1,17 @@
 #pragma once
 // What a scene is made of, as plain values; `read_scene_settings` fills it from a case file.
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "odpd/core/config.h"
 #include "odpd/geometry/box.h"
-#include "odpd/pairs/dpd.h"
+#include "odpd/pairs/bonds.h"
+#include "odpd/pairs/registry.h"
 #include "odpd/scene/bodies.h"
-#include "odpd/scene/calibration.h"
 #include "odpd/scene/molecules.h"
-#include "odpd/scene/physical_inputs.h"
 
 namespace odpd {
 
@@ -62,12 +62,10 @@ struct SceneSettings {
   std::uint64_t seed = 1;
   Box<D> box;
   std::vector<SpeciesSettings> species{SpeciesSettings{}};
-  std::vector<DpdParameters> pairs{DpdParameters{}};  ///< [A * species.size() + B]
-  DpdParameters fluid;                                ///< of [fluid], before any [[pair]]
-  PhysicalInputs physical_inputs;  ///< that [fluid] gives in place of DPD parameters; may be none
-  std::optional<Calibration> calibration;  ///< where gamma comes from it
-  std::int64_t count = 0;                  ///< fluid particles; 0: by density
-  double density = 4.0;                    ///< fluid particles per volume between the walls
+  /// Of all pairs of species; a library user may give one of their own.
+  std::shared_ptr<const PairModel<D>> model = default_pair_model<D>();
+  std::int64_t count = 0;      ///< fluid particles; 0: by density
+  double density = 4.0;        ///< fluid particles per volume between the walls
   double start_density = 0.0;  ///< what the start file must hold, as `count` where > 0; 0: any
   double mass = 0.0;           ///< of every fluid particle
   double zeta_0 = 0.0;         ///< uniform drag on every fluid particle (mass/time)

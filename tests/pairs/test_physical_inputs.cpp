@@ -6,8 +6,9 @@
 #include <functional>
 #include <numbers>
 
-#include "cases.h"
-#include "odpd/scene/physical_keys.h"
+#include "odpd/pairs/dpd.h"
+#include "odpd/pairs/kinetic_theory.h"
+#include "odpd/pairs/physical_keys.h"
 #include "support/dimensions.h"
 #include "support/errors.h"
 
@@ -15,7 +16,6 @@ namespace {
 
 using odpd::dpd_parameters;
 using odpd::DpdParameters;
-using odpd::kinetic_theory;
 using odpd::KineticTheory;
 using odpd::PhysicalInputError;
 using odpd::PhysicalInputs;
@@ -28,6 +28,12 @@ DpdParameters with_cutoff(double cutoff, double kT = 1.0) {
   p.cutoff = cutoff;
   p.kT = kT;
   return p;
+}
+
+template <int D>
+KineticTheory kinetic_theory(const DpdParameters& p, double density, double mass) {
+  return odpd::kinetic_theory<D>(odpd::pair_moments(*odpd::make_dpd<D>(p), 1), {1.0}, density,
+                                 mass);
 }
 
 PhysicalInputs like_water(double eta, double alpha) {
@@ -210,20 +216,6 @@ TEST(PhysicalInputs, ThesisSchmidtNumbersOfThreeLevels) {
     EXPECT_NEAR(k.eta_friction / (k.rho * k.diffusion), level.Sc, 0.5);
     EXPECT_NEAR(k.kappa_inverse, water, 1e-9);
   }
-}
-
-TEST(PhysicalInputs, RhoIsDensityTimesMass) {
-  const auto fluid = [](const std::string& text) {
-    return odpd::Config::from_text("[fluid]\n" + text, "case.toml").table("fluid");
-  };
-  EXPECT_DOUBLE_EQ(odpd::density_of_rho(fluid("rho = 8.0\nmass = 2.0\n")), 4.0);
-  EXPECT_DOUBLE_EQ(odpd::mass_of_rho(fluid("rho = 8.0\n"), 4.0), 2.0);
-  expect_error<odpd::ConfigError>([&] { odpd::density_of_rho(fluid("rho = 8.0\n")); },
-                                  {"fluid.rho", "two of"});
-  expect_error<odpd::ConfigError>([&] { odpd::density_of_rho(fluid("rho = 8.0\nmass = 0.0\n")); },
-                                  {"fluid.rho", "mass = 0"});
-  expect_error<odpd::ConfigError>([&] { odpd::mass_of_rho(fluid("rho = 8.0\nmass = 1.0\n"), 4.0); },
-                                  {"fluid.rho", "never three"});
 }
 
 // Figure 3.4: sigma = 3, a = 3.5320 is alpha = 8.5997, eta = 16.9721, Sc = 164.52 by kinetic theory.

@@ -8,12 +8,13 @@
 //   viscosity      eta = gamma n^2 [R^2 w_D]/(2 d (d+2))                (3.8)  ->  gamma (3.14), (3.18); s = 1/2: (3.9), (3.10)
 //   dynamics       Sc = eta/(rho D),  D = d kT/(n gamma [w_D]),  rho = n m  (3.12)  ->  s (3.13), (3.17)
 //
-// These are estimates: the viscosity of friction alone is at most eta, and much less at small mass and density.
+// The reverse, what kinetic theory says of a fluid: pairs/kinetic_theory.h. Of the friction the formulas count gamma alone, not
+// gamma_perp and gamma_far. These are estimates: the viscosity of friction alone is at most eta, and much less at small mass and density.
 #include <optional>
 #include <string>
 
 #include "odpd/core/error.h"
-#include "odpd/pairs/dpd.h"
+#include "odpd/pairs/dpd_parameters.h"
 
 namespace odpd {
 
@@ -51,26 +52,5 @@ class PhysicalInputError : public ConfigError {
 template <int D>
 DpdParameters dpd_parameters(const PhysicalInputs& inputs, const DpdParameters& base,
                              double density, double mass);
-
-/// What kinetic theory says of a fluid. Infinite: Sc, alpha and speed_of_sound at mass = 0, alpha at a = 0,
-/// diffusion at gamma = 0, kappa_inverse at kT = 0.
-struct KineticTheory {
-  double rho = 0.0;             ///< n m (mass/length^d)
-  double eta_friction = 0.0;    ///< (3.8); an upper bound on that of friction alone
-  double eta_kinetic = 0.0;     ///< rho D/2 (3.12)
-  double diffusion = 0.0;       ///< D, of friction alone (length^2/time)
-  double Sc = 0.0;              ///< eta()/(rho D): 1/2 above that of eta_friction
-  double alpha = 0.0;           ///< (3.3)
-  double pressure = 0.0;        ///< (3.1), (3.2) (energy/length^d)
-  double bulk_modulus = 0.0;    ///< n dp/dn (energy/length^d)
-  double kappa_inverse = 0.0;   ///< (3.4)
-  double speed_of_sound = 0.0;  ///< sqrt((dp/dn)/m) (3.42)
-
-  double eta() const { return eta_friction + eta_kinetic; }
-};
-
-/// The reverse of `dpd_parameters`. Of the friction it counts gamma alone, not gamma_perp and gamma_far.
-template <int D>
-KineticTheory kinetic_theory(const DpdParameters& p, double density, double mass);
 
 }  // namespace odpd

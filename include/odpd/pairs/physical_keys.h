@@ -1,7 +1,7 @@
 #pragma once
-// The keys of [fluid] that describe it by physical properties: eta, Sc, alpha, kappa_inverse, and rho = n m.
+// The keys of [fluid] that describe it by physical properties: eta, Sc, alpha, kappa_inverse.
 #include "odpd/core/config.h"
-#include "odpd/scene/physical_inputs.h"
+#include "odpd/pairs/physical_inputs.h"
 
 namespace odpd {
 
@@ -15,9 +15,7 @@ template <int D>
 DpdParameters read_physical_fluid(const Config& fluid, const PhysicalInputs& inputs, double density,
                                   double mass);
 
-/// rho = n m: the density that rho and mass give, and the mass that rho and the density n give. Throws ConfigError when
-/// rho, mass and an amount (density or count) are all given, or rho alone, or rho at mass = 0.
-double density_of_rho(const Config& fluid);
-double mass_of_rho(const Config& fluid, double density);
+/// Throws ConfigError where [fluid] has such a key, or a calibration: they are of DPD, not of this model.
+void refuse_physical_inputs(const Config& fluid, const std::string& model);
 
 }  // namespace odpd

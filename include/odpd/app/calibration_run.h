@@ -7,7 +7,7 @@
 #include <string>
 
 #include "odpd/app/calibration.h"
-#include "odpd/pairs/dpd.h"
+#include "odpd/pairs/dpd_parameters.h"
 
 namespace odpd {
 

@@ -1,16 +1,13 @@
-#include "odpd/scene/physical_inputs.h"
+#include "odpd/pairs/physical_inputs.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace odpd {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // (x + 1)(x + 2)...(x + last)
 double rising_product(double x, int last) {
@@ -116,33 +113,11 @@ DpdParameters dpd_parameters(const PhysicalInputs& in, const DpdParameters& base
   return p;
 }
 
-template <int D>
-KineticTheory kinetic_theory(const DpdParameters& p, double n, double mass) {
-  const double repulsion = p.a * weight_moment<D>(1, p.s_bar, p.cutoff) / D;  // 2 (p - n kT)/n^2
-  const double compression = p.kT + n * repulsion;                            // dp/dn
-  const double drag = p.gamma * n * weight_moment<D>(0, p.s, p.cutoff);       // d kT/D
-  KineticTheory k;
-  k.rho = n * mass;
-  k.eta_friction = p.gamma * n * n * weight_moment<D>(2, p.s, p.cutoff) / (2.0 * D * (D + 2));
-  k.diffusion = p.kT > 0.0 ? D * p.kT / drag : 0.0;
-  k.eta_kinetic = mass > 0.0 ? 0.5 * k.rho * k.diffusion : 0.0;
-  const double inertia = k.rho * k.diffusion;
-  k.Sc = inertia > 0.0 ? k.eta() / inertia : infinity;
-  k.alpha = mass * p.a > 0.0 ? p.gamma * p.gamma * p.cutoff / (mass * p.a) : infinity;
-  k.pressure = n * p.kT + 0.5 * n * n * repulsion;
-  k.bulk_modulus = n * compression;
-  k.kappa_inverse = p.kT > 0.0 ? compression / p.kT : infinity;
-  k.speed_of_sound = mass > 0.0 ? std::sqrt(compression / mass) : infinity;
-  return k;
-}
-
 template double weight_moment<2>(int, double, double);
 template double weight_moment<3>(int, double, double);
 template DpdParameters dpd_parameters<2>(const PhysicalInputs&, const DpdParameters&, double,
                                          double);
 template DpdParameters dpd_parameters<3>(const PhysicalInputs&, const DpdParameters&, double,
                                          double);
-template KineticTheory kinetic_theory<2>(const DpdParameters&, double, double);
-template KineticTheory kinetic_theory<3>(const DpdParameters&, double, double);
 
 }  // namespace odpd

@@ -1,4 +1,4 @@
-#include "odpd/scene/physical_keys.h"
+#include "odpd/pairs/physical_keys.h"
 
 #include <fmt/format.h>
 
@@ -65,20 +65,13 @@ DpdParameters read_physical_fluid(const Config& fluid, const PhysicalInputs& in,
   }
 }
 
-double density_of_rho(const Config& fluid) {
-  if (!fluid.has("mass"))
-    fluid.fail("rho", "is density times mass: give two of rho, density (or count) and mass");
-  const double mass = fluid.non_negative("mass");
-  if (mass == 0.0)
-    fluid.fail("rho", "is density times mass, so 0 at mass = 0: give density (or count) instead");
-  return fluid.positive("rho") / mass;
-}
-
-double mass_of_rho(const Config& fluid, double density) {
-  if (fluid.has("mass"))
-    fluid.fail("rho",
-               "is density times mass: give two of rho, density (or count) and mass, never three");
-  return fluid.positive("rho") / density;
+void refuse_physical_inputs(const Config& fluid, const std::string& model) {
+  for (const char* key : {"eta", "Sc", "alpha", "kappa_inverse", "calibration"})
+    if (fluid.has(key))
+      fluid.fail(key,
+                 fmt::format("physical inputs and calibrations are of fluid.model = \"dpd\", this "
+                             "fluid's is \"{}\": give the parameters of that model instead",
+                             model));
 }
 
 template DpdParameters read_physical_fluid<2>(const Config&, const PhysicalInputs&, double, double);

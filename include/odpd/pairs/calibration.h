@@ -4,7 +4,7 @@
 #include <string>
 
 #include "odpd/core/config.h"
-#include "odpd/pairs/dpd.h"
+#include "odpd/pairs/dpd_parameters.h"
 
 namespace odpd {
 

@@ -1,4 +1,4 @@
-#include "odpd/scene/calibration.h"
+#include "odpd/pairs/calibration.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "odpd/app/viscosity_run.h"
+#include "odpd/app/calibration_run.h"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,8 @@
 
 #include "odpd/app/simulation.h"
 #include "odpd/core/parallel.h"
+#include "odpd/pairs/dpd.h"
+#include "odpd/pairs/pair_moments.h"
 
 namespace odpd {
 
@@ -20,12 +22,10 @@ double time_scale(const MeasuredFluid& fluid, double gamma, double diffusing, do
 
 // Well within the limit of explicit repulsion; docs/rheology.md has viscosities at larger and smaller steps.
 double time_step(const MeasuredFluid& fluid, double gamma) {
-  SceneSettings<2> scene;
   DpdParameters p = fluid.dpd;
   p.gamma = gamma;
-  scene.pairs = {p};
-  scene.mass = fluid.mass;
-  return std::min(0.6 * explicit_step_limit(scene), time_scale(fluid, gamma, 0.0065, 0.03));
+  const double limit = *explicit_step_limit(pair_moments(*make_dpd<2>(p), 1), fluid.mass);
+  return std::min(0.6 * limit, time_scale(fluid, gamma, 0.0065, 0.03));
 }
 
 Config measuring_case(const MeasuredFluid& fluid, const ViscosityRun& run, double dt) {

@@ -1,0 +1,39 @@
+#pragma once
+// What the reader of a pair model gets: the tables of the case that are the model's, and what else its numbers may depend on.
+#include <cstddef>
+#include <vector>
+
+#include "odpd/core/config.h"
+#include "odpd/pairs/calibration.h"
+
+namespace odpd {
+
+struct FluidKeys {
+  /// A [[pair]], less its key `species`: the species a and b by index.
+  struct Pair {
+    Config keys;
+    std::size_t a, b;
+  };
+
+  Config
+      fluid;  ///< [fluid], less the keys that are of every model (density, count, mass, zeta_0, ...)
+  std::vector<Pair> pairs;
+  std::size_t species = 1;  ///< how many
+  double density = 0.0;  ///< of the fluid's particles (1/length^d); 0: a start file tells it later
+  double mass = 0.0;
+  /// Contents of the file that fluid.calibration names, where it was read.
+  std::optional<Calibration> calibration;
+};
+
+/// A table [A * species + B] of the parameters of all pairs of species: those of [fluid], and what read(keys, fluid) makes of them for a
+/// [[pair]].
+template <class Parameters, class Read>
+std::vector<Parameters> pair_table(const FluidKeys& f, const Parameters& fluid, const Read& read) {
+  std::vector<Parameters> table(f.species * f.species, fluid);
+  for (const FluidKeys::Pair& pair : f.pairs)
+    table[pair.a * f.species + pair.b] = table[pair.b * f.species + pair.a] =
+        read(pair.keys, fluid);
+  return table;
+}
+
+}  // namespace odpd

@@ -1,0 +1,40 @@
+#pragma once
+// A fluid by kinetic theory without structure (g = 1, particles that follow the mean flow; Marsh 1998, Nguyen 2021), of any pair model.
+// With [f] the integral of f over d-dimensional space (pairs/pair_moments.h):
+//
+//   pressure   p = n kT + n^2 [r f_c]/(2 d)
+//   viscosity  eta = n^2 [r^2 (zeta_par + (d + 1) zeta_perp)]/(2 d (d+2)) + rho D/2
+//   diffusion  D = d kT/(n [zeta_par + (d - 1) zeta_perp]),  rho = n m
+//
+// and in a mixture the means of [...] over the pairs of species at random.
+#include <vector>
+
+#include "odpd/pairs/pair_moments.h"
+
+namespace odpd {
+
+/// What kinetic theory says of a fluid. Infinite: Sc, alpha and speed_of_sound at mass = 0, alpha without force,
+/// diffusion without friction, kappa_inverse at kT = 0. Not a number: undefined, where an integral diverges.
+struct KineticTheory {
+  double rho = 0.0;           ///< n m (mass/length^d)
+  double eta_friction = 0.0;  ///< (3.8); an upper bound on that of friction alone
+  double eta_kinetic = 0.0;   ///< rho D/2 (3.12)
+  double diffusion = 0.0;     ///< D, of friction alone (length^2/time)
+  double Sc = 0.0;            ///< eta()/(rho D): 1/2 above that of eta_friction
+  double alpha =
+      0.0;  ///< largest zeta^2 r_e/(m |f_c|), of the pair of species where it is least (3.3)
+  double energy = 0.0;          ///< per particle
+  double pressure = 0.0;        ///< (3.1), (3.2) (energy/length^d)
+  double bulk_modulus = 0.0;    ///< n dp/dn (energy/length^d)
+  double kappa_inverse = 0.0;   ///< (dp/dn)/kT (3.4)
+  double speed_of_sound = 0.0;  ///< sqrt((dp/dn)/m) (3.42)
+
+  double eta() const { return eta_friction + eta_kinetic; }
+};
+
+/// `pairs` [A * species + B]; `fraction`: of the particles, by species.
+template <int D>
+KineticTheory kinetic_theory(const std::vector<PairMoments>& pairs,
+                             const std::vector<double>& fraction, double density, double mass);
+
+}  // namespace odpd

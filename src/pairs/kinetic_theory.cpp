@@ -1,0 +1,67 @@
+#include "odpd/pairs/kinetic_theory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace odpd {
+
+namespace {
+
+// Over the pairs of species at random; not a number where it is undefined for a pair that is there.
+struct Mixture {
+  double energy = 0.0, virial = 0.0, drag = 0.0, shear = 0.0;
+  double kT = 0.0, alpha_mass = std::numeric_limits<double>::infinity();
+
+  Mixture(const std::vector<PairMoments>& pairs, const std::vector<double>& fraction) {
+    const auto add = [](double& sum, double share, const std::optional<double>& value) {
+      sum += share * value.value_or(std::nan(""));
+    };
+    for (std::size_t a = 0; a < fraction.size(); ++a)
+      for (std::size_t b = 0; b < fraction.size(); ++b) {
+        const double share = fraction[a] * fraction[b];
+        if (share == 0.0) continue;
+        const PairMoments& p = pairs[a * fraction.size() + b];
+        add(energy, share, p.energy);
+        add(virial, share, p.virial);
+        add(drag, share, p.drag);
+        add(shear, share, p.shear);
+        kT = std::max(kT, p.kT);
+        if (p.force > 0.0)
+          alpha_mass = std::min(alpha_mass, p.zeta_par * p.zeta_par * p.force_range / p.force);
+      }
+  }
+};
+
+}  // namespace
+
+template <int D>
+KineticTheory kinetic_theory(const std::vector<PairMoments>& pairs,
+                             const std::vector<double>& fraction, double density, double mass) {
+  const Mixture mean(pairs, fraction);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double n = density, kT = mean.kT;
+  const double repulsion = mean.virial / D;       // 2 (p - n kT)/n^2
+  const double compression = kT + n * repulsion;  // dp/dn
+  KineticTheory k;
+  k.rho = n * mass;
+  k.eta_friction = n * n * mean.shear / (2.0 * D * (D + 2));
+  k.diffusion = kT > 0.0 ? D * kT / (n * mean.drag) : 0.0;
+  k.eta_kinetic = mass > 0.0 ? 0.5 * k.rho * k.diffusion : 0.0;
+  const double inertia = k.rho * k.diffusion;
+  k.Sc = inertia > 0.0 ? k.eta() / inertia : infinity;
+  k.alpha = mass > 0.0 ? mean.alpha_mass / mass : infinity;
+  k.energy = 0.5 * n * mean.energy;
+  k.pressure = n * kT + 0.5 * n * n * repulsion;
+  k.bulk_modulus = n * compression;
+  k.kappa_inverse = kT > 0.0 ? compression / kT : infinity;
+  k.speed_of_sound = mass > 0.0 ? std::sqrt(compression / mass) : infinity;
+  return k;
+}
+
+template KineticTheory kinetic_theory<2>(const std::vector<PairMoments>&,
+                                         const std::vector<double>&, double, double);
+template KineticTheory kinetic_theory<3>(const std::vector<PairMoments>&,
+                                         const std::vector<double>&, double, double);
+
+}  // namespace odpd
