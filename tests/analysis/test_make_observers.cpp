@@ -45,8 +45,7 @@ TEST_F(MakeObservers, ThermoAndMsdAreAlwaysThere) {
 TEST_F(MakeObservers, WithoutTimeThereIsNoMsd) {
   for (const char* text : {"", "[[observe]]\nkind = \"msd\"\nwindow = 2.0\n"}) {
     const Config config = Config::from_text(text, "case.toml");
-    const auto observers =
-        odpd::make_observers<2>(config, scene, odpd::Clock{.dt = 1.0}, false);
+    const auto observers = odpd::make_observers<2>(config, scene, odpd::Clock{.dt = 1.0}, false);
     config.reject_unread();
     ASSERT_EQ(observers.size(), 1u);
     EXPECT_EQ(observers[0]->settings().kind, "thermo");
@@ -123,8 +122,8 @@ TEST_F(MakeObservers, RefuseWhatTheSceneHasNot) {
                           std::initializer_list<const char*> parts) {
     const Scene<2> other(std::move(s));
     const Config config = Config::from_text("[[observe]]\nkind = \"" + kind + "\"\n", "case.toml");
-    expect_error<ConfigError>([&] { odpd::make_observers<2>(config, other, odpd::Clock{.dt = 0.02}); },
-                              parts);
+    expect_error<ConfigError>(
+        [&] { odpd::make_observers<2>(config, other, odpd::Clock{.dt = 0.02}); }, parts);
   };
   const auto s = records::periodic<2>(5.0, {{{1.0, 1.0}}, {{3.0, 3.0}}});
   auto cold = s, heavy = s, dragged = s;
