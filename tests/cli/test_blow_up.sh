@@ -87,6 +87,16 @@ expect test "$(grep -c 'limit of explicit repulsion' "$err_text")" -eq 0
 expect_exit 0 run box "${quick[@]}" --set run.duration=1 --set integrator.dt=0.15 --set run.blow_up=1e6 --out warned
 expect_text "$err_text" 'twice the limit of explicit repulsion'
 
+# --- small systems that begin at random are sound, whether or not their first state looks ordered by chance ---
+unrelaxed=(--set 'box.size=[5.0,4.0]' --set fluid.count=80 --set start.relax_sweeps=0 --set run.equilibrate=0
+  --set output.trajectory_every=0)
+sed '/^density/d' box/case.toml >unrelaxed.toml
+for seed in 2 14 16 17; do
+  expect_exit 0 run unrelaxed.toml "${unrelaxed[@]}" --set seed=$seed --set fluid.mass=1 --set integrator.dt=2e-4 \
+    --set run.duration=0.2 --out start
+  expect_exit 0 run unrelaxed.toml "${unrelaxed[@]}" --set seed=$seed --set integrator.dt=2e-5 --set run.duration=0.02 --out start
+done
+
 # --- the start file and what the case says of its contents ---
 file=(--set start.from=file --set "start.file=\"$PWD/extrapolated/last_good.h5\"")
 expect_exit 0 run box "${file[@]}" --out from_file

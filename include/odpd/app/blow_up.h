@@ -11,7 +11,9 @@
 //   configurational          sum |F_i|^2 > b (kT (L + 3 S) + N F_u^2 + sum F_b^2), L = sum lap_i U, S^2 = sum (lap_i U)^2, F_u the
 //   temperature              drag that the drive can cause on a particle; at equilibrium <sum |F|^2> = kT <L>, and where
 //                            particles lie at random L vanishes (soft repulsion: their energy is hardly raised then).
-//                            From the first state that passes on, as an unrelaxed start does not; kT > 0 and f_c != 0 only
+//                            kT > 0 and f_c != 0 only. An unrelaxed start does not pass, or by chance, so this counts from the
+//                            first state on that is settled, sum |F_i|^2 <= 3 (kT L + N F_u^2 + sum F_b^2); after 50 times
+//                            the limit of explicit steps, in which soft particles find their places, from the first that passes
 //   jumps                    more than half of the pairs within the cutoff moved by more than it relative to each other in
 //                            the last step; only where the largest |f_c| r_c >= 10 kT, as weak repulsion does not mind
 //
@@ -33,6 +35,8 @@ template <int D>
 class BlowUpWatch {
  public:
   static constexpr std::int64_t interval = 100;  ///< steps between judgements
+  static constexpr double relaxations =
+      50.0;  ///< limits of explicit steps that an unrelaxed start is given to settle
 
   /// `scene` must outlive it. multiple: b above.
   BlowUpWatch(const Scene<D>& scene, double multiple);
