@@ -16,7 +16,6 @@
 #include "odpd/core/error.h"
 #include "odpd/core/log.h"
 #include "odpd/core/parallel.h"
-#include "odpd/io/file.h"
 
 namespace odpd {
 
@@ -57,8 +56,7 @@ template <int D>
   const bool blew_up = dynamic_cast<const BlowUpError*>(&error) != nullptr;
   output.salvage();
   output.leave_last_good();
-  write_file_atomically(
-      output.directory() / "summary.json",
+  output.write_summary(
       summary_json(simulation, simulation.results(), {}, Failure{blew_up, error.what()}));
   if (!blew_up || simulation.last_good().id.empty()) throw;
   throw BlowUpError(fmt::format(
@@ -76,8 +74,7 @@ int conclude(const Simulation<D>& simulation, RunOutput<D>& output) {
   const auto checks = interrupted_early ? std::vector<CheckOutcome>{}
                                         : evaluate_checks(simulation.settings().checks, results,
                                                           simulation.alarm_crossings());
-  write_file_atomically(output.directory() / "summary.json",
-                        summary_json(simulation, results, checks));
+  output.write_summary(summary_json(simulation, results, checks));
   fmt::print("{}  files in {}\n", report_text(simulation, results, checks),
              output.directory().string());
   std::fflush(stdout);
@@ -114,8 +111,11 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
   }
   const bool continues =
       checkpoint && same_directory(directory, fs::absolute(options.restart).parent_path());
-  const RunLock lock = continues ? RunLock(directory) : prepare_run_directory(directory);
+  // Whatever may be refused is, before anything of a directory that exists is touched.
+  simulation.judge();
   RunOutput<D> output(directory, config, simulation);
+  if (continues && !RunLock::marks(directory)) output.check(*checkpoint);
+  const RunLock lock = continues ? RunLock(directory) : prepare_run_directory(directory);
   if (continues) {
     output.resume(*checkpoint);
   } else {

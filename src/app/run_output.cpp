@@ -8,7 +8,6 @@
 #include "odpd/core/log.h"
 #include "odpd/io/file.h"
 #include "odpd/io/gnuplot.h"
-#include "odpd/io/vtk.h"
 #include "odpd/version.h"
 
 namespace odpd {
@@ -42,7 +41,8 @@ RunOutput<D>::RunOutput(fs::path directory, const Config& config, Simulation<D>&
     : directory_(std::move(directory)),
       config_(config),
       simulation_(simulation),
-      trajectory_(directory_, portable_case(config), ODPD_VERSION, simulation.settings().title) {}
+      trajectory_(directory_, portable_case(config), ODPD_VERSION, simulation.settings().title),
+      vtk_(directory_) {}
 
 template <int D>
 fs::path RunOutput<D>::series_path(std::size_t k) const {
@@ -66,12 +66,28 @@ void RunOutput<D>::begin() {
 
 template <int D>
 void RunOutput<D>::first_frame() {
-  if (simulation_.settings().output.trajectory_every > 0 && simulation_.clock().step == 0)
+  if (simulation_.settings().output.trajectory_every > 0 && simulation_.clock().step == 0 &&
+      trajectory_.frames() == 0)
     trajectory_.append(simulation_.frame());
 }
 
 template <int D>
+void RunOutput<D>::check(CheckpointReader& in) {
+  const StateReader& state = in.component("output");
+  const std::vector<std::int64_t> bytes = state.read_integers("series_bytes");
+  if (bytes.size() != simulation_.observers().size())
+    throw IoError(
+        fmt::format("{}: its checkpoint is of {} observers, the case has {}: it is damaged",
+                    directory_.string(), bytes.size(), simulation_.observers().size()));
+  for (std::size_t k = 0; k < bytes.size(); ++k)
+    if (simulation_.observers()[k]->settings().series) SeriesFile::check(series_path(k), bytes[k]);
+  trajectory_.reopen(state.read_integers("segment").at(0), state.read_integers("frames").at(0));
+}
+
+template <int D>
 void RunOutput<D>::resume(CheckpointReader& in) {
+  check(in);
+  write_file_atomically(directory_ / "case.toml", portable_case(config_));
   // Until this part has ended, its summary is not that of the run.
   const fs::path summary = directory_ / "summary.json";
   if (fs::exists(summary)) fs::rename(summary, directory_ / "summary.previous.json");
@@ -81,12 +97,8 @@ void RunOutput<D>::resume(CheckpointReader& in) {
     series_.push_back(simulation_.observers()[k]->settings().series
                           ? std::make_unique<SeriesFile>(series_path(k), bytes.at(k))
                           : nullptr);
-  trajectory_.resume_at(state.read_integers("segment").at(0));
-  const std::vector<double> times = state.read_doubles("vtk_times");
-  const std::vector<std::int64_t> steps = state.read_integers("vtk_steps");
-  for (std::size_t k = 0; k < times.size(); ++k)
-    vtk_frames_.emplace_back(times[k], fmt::format("frames/{:010}.vtp", steps.at(k)));
-  write_file_atomically(directory_ / "case.toml", portable_case(config_));
+  trajectory_.delete_later();
+  vtk_.resume_at(state.read_doubles("vtk_times"), state.read_integers("vtk_steps"));
   first_frame();
 }
 
@@ -105,42 +117,27 @@ void RunOutput<D>::after_step() {
     series_[k]->append(row);
   }
   if (due(output.trajectory_every)) trajectory_.append(simulation_.frame());
-  if (due(output.vtk_every)) write_vtk_frame();
-  if (due(output.checkpoint_every)) checkpoint();
+  if (due(output.vtk_every)) vtk_.append(simulation_.frame());
+  if (due(output.checkpoint_every)) checkpoint(true);
 }
 
 template <int D>
-void RunOutput<D>::write_vtk_frame() {
-  const Clock& clock = simulation_.clock();
-  const std::string name = fmt::format("frames/{:010}.vtp", clock.step);
-  if (!vtk_frames_.empty() && vtk_frames_.back().second == name) return;
-  make_directory(directory_ / "frames");
-  write_vtp(directory_ / name, simulation_.frame());
-  vtk_frames_.emplace_back(clock.time(), name);
-  write_pvd(directory_ / "particles.pvd", vtk_frames_);
-}
-
-template <int D>
-void RunOutput<D>::checkpoint() {
+void RunOutput<D>::checkpoint(bool ends_segment) {
   simulation_.judge();
-  std::vector<std::int64_t> bytes, steps;
-  std::vector<double> times;
+  std::vector<std::int64_t> bytes;
   for (auto& series : series_) {
     if (series) series->flush(true);
     bytes.push_back(series ? series->bytes() : 0);
   }
-  trajectory_.close_segment();
-  for (const auto& [time, name] : vtk_frames_) {
-    times.push_back(time);
-    steps.push_back(std::stoll(name.substr(name.find('/') + 1)));
-  }
+  ends_segment ? trajectory_.close_segment() : trajectory_.save_segment();
   CheckpointWriter out;
   simulation_.save(out);
   StateWriter& state = out.component("output");
   state.write("series_bytes", bytes);
   state.write("segment", std::vector<std::int64_t>{trajectory_.segment()});
-  state.write("vtk_times", times);
-  state.write("vtk_steps", steps);
+  state.write("frames", std::vector<std::int64_t>{trajectory_.frames()});
+  state.write("vtk_times", vtk_.times());
+  state.write("vtk_steps", vtk_.steps());
   out.save(directory_ / "checkpoint.h5");
 }
 
@@ -149,7 +146,7 @@ void RunOutput<D>::salvage() noexcept {
   try {
     for (auto& series : series_)
       if (series) series->flush();
-    trajectory_.close_segment();
+    trajectory_.save_segment();
   } catch (const std::exception& e) {
     log_warning(fmt::format("and the output so far could not all be written: {}", e.what()));
   }
@@ -173,7 +170,7 @@ void RunOutput<D>::leave_last_good() noexcept {
 template <int D>
 void RunOutput<D>::close() {
   const PhaseTimer timer(simulation_.dynamics().phases(), Phase::write);
-  write_vtk_frame();
+  vtk_.append_last(simulation_.frame());
   checkpoint();
 }
 
@@ -186,6 +183,13 @@ void RunOutput<D>::write_results(const Results& results) {
   for (const auto& [name, chart] : results.charts)
     drawn = drawn && draw_chart(directory_ / name, chart);
   if (drawn) draw_particles(directory_ / "particles", simulation_.frame(), 0);
+}
+
+template <int D>
+void RunOutput<D>::write_summary(const std::string& text) {
+  write_file_atomically(directory_ / "summary.json", text);
+  std::error_code ignored;
+  fs::remove(directory_ / "summary.previous.json", ignored);
 }
 
 template class RunOutput<2>;

@@ -115,15 +115,23 @@ SeriesFile::SeriesFile(const std::filesystem::path& file, const std::vector<std:
 
 SeriesFile::SeriesFile(const std::filesystem::path& file, std::int64_t bytes)
     : file_(file), bytes_(bytes) {
-  const Descriptor out(file_, O_WRONLY, file_);
-  const auto wanted = static_cast<std::size_t>(bytes);
-  if (out.size() < wanted) {
+  check(file, bytes);
+  Descriptor(file_, O_WRONLY, file_).truncate(static_cast<std::size_t>(bytes));
+}
+
+void SeriesFile::check(const std::filesystem::path& file, std::int64_t bytes) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored))
     throw IoError(
-        fmt::format("{}: has {} bytes where the checkpoint knows {}: it was cut or "
-                    "replaced since; restore it, or start the run afresh",
-                    file_.string(), out.size(), wanted));
-  }
-  out.truncate(wanted);
+        fmt::format("{}: is missing, and the checkpoint continues it from byte {}: restore it, or "
+                    "continue into a new directory with --out",
+                    file.string(), bytes));
+  const Descriptor out(file, O_WRONLY, file);
+  if (out.size() < static_cast<std::size_t>(bytes))
+    throw IoError(
+        fmt::format("{}: has {} bytes where the checkpoint knows {}: it was cut or replaced since; "
+                    "restore it, or continue into a new directory with --out",
+                    file.string(), out.size(), bytes));
 }
 
 void SeriesFile::append(const std::vector<double>& row) { append_line(buffer_, row); }

@@ -95,4 +95,14 @@ fs::path move_aside(const fs::path& directory) {
   }
 }
 
+void remove_file(const fs::path& file) {
+  std::error_code error;
+  fs::remove(file, error);
+  if (error)
+    throw IoError(
+        fmt::format("{}: is from after the checkpoint and cannot be removed: {}; check "
+                    "permissions",
+                    file.string(), error.message()));
+}
+
 }  // namespace odpd

@@ -1,7 +1,12 @@
 #include "h5_handle.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
+
+#include "odpd/core/error.h"
+#include "odpd/io/file.h"
 
 namespace odpd {
 
@@ -33,6 +38,23 @@ std::string h5_memory_name() {
   // HDF5 looks for a file of this name before it makes one in memory; below /dev/null is none.
   static std::atomic<unsigned> count{0};
   return "/dev/null/" + std::to_string(count++);
+}
+
+H5Handle open_in_memory(const std::filesystem::path& file, unsigned flags) {
+  silence_h5();
+  std::string image = read_file(file);
+  const H5Handle access = h5_memory_access();
+  H5Handle opened;
+  if (!image.empty()) {
+    H5Pset_file_image(access.id(), image.data(), image.size());
+    opened = H5Handle(H5Fopen(h5_memory_name().c_str(), flags, access.id()), H5Fclose);
+  }
+  if (!opened)
+    throw IoError(
+        fmt::format("{}: is not a readable HDF5 file (cut off or damaged): {}; use an "
+                    "earlier file or write it anew",
+                    file.string(), image.empty() ? "it is empty" : h5_reason()));
+  return opened;
 }
 
 H5Handle h5_text_type(std::size_t length) {

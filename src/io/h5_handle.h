@@ -2,6 +2,7 @@
 // Private to io: HDF5 identifiers that close themselves, and the reason HDF5 gives for a failure.
 #include <hdf5.h>
 
+#include <filesystem>
 #include <string>
 #include <utility>
 
@@ -45,6 +46,9 @@ void silence_h5();
 H5Handle h5_memory_access();
 /// A name for a file in memory: never used before, and never that of a file on disk.
 std::string h5_memory_name();
+/// The file on disk, read whole, to look at or to change in memory (`flags` of H5Fopen). Throws IoError when it is missing,
+/// cut off or not HDF5.
+H5Handle open_in_memory(const std::filesystem::path& file, unsigned flags);
 /// Fixed-length UTF-8 text type of `length` bytes (at least 1).
 H5Handle h5_text_type(std::size_t length);
 

@@ -84,15 +84,17 @@ void write_attribute(hid_t file, const std::string& path, const std::string& nam
   if (count(shape) > 0) check(H5Awrite(attribute.id(), native, values), path + "@" + name);
 }
 
+std::vector<hsize_t> dimensions(const H5Handle& dataset, const std::string& path) {
+  const H5Handle space(check(H5Dget_space(dataset.id()), path), H5Sclose);
+  std::vector<hsize_t> dims(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.id())));
+  H5Sget_simple_extent_dims(space.id(), dims.data(), nullptr);
+  return dims;
+}
+
 void append_to(hid_t file, const std::string& path, hid_t native, const void* row,
                std::size_t size) {
   const H5Handle dataset(check(H5Dopen2(file, path.c_str(), H5P_DEFAULT), path), H5Dclose);
-  std::vector<hsize_t> dims;
-  {
-    const H5Handle space(check(H5Dget_space(dataset.id()), path), H5Sclose);
-    dims.resize(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.id())));
-    H5Sget_simple_extent_dims(space.id(), dims.data(), nullptr);
-  }
+  std::vector<hsize_t> dims = dimensions(dataset, path);
   const auto wanted =
       std::accumulate(dims.begin() + 1, dims.end(), hsize_t{1}, std::multiplies<>());
   if (size != wanted) fail(path, fmt::format("a row of {} values where {} fit", size, wanted));
@@ -123,6 +125,8 @@ H5Image::H5Image() : impl_(std::make_unique<Impl>()) {
   impl_->file = H5Handle(
       check(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), "/"), H5Fclose);
 }
+H5Image::H5Image(const std::filesystem::path& file)
+    : impl_(std::make_unique<Impl>(Impl{open_in_memory(file, H5F_ACC_RDWR)})) {}
 H5Image::~H5Image() = default;
 H5Image::H5Image(H5Image&&) noexcept = default;
 H5Image& H5Image::operator=(H5Image&&) noexcept = default;
@@ -221,6 +225,20 @@ void H5Image::append_row(const std::string& path, const std::vector<double>& row
 
 void H5Image::append_row(const std::string& path, const std::vector<std::int64_t>& row) {
   append_to(impl_->file.id(), path, H5T_NATIVE_INT64, row.data(), row.size());
+}
+
+std::int64_t H5Image::rows(const std::string& path) const {
+  const H5Handle dataset(check(H5Dopen2(impl_->file.id(), path.c_str(), H5P_DEFAULT), path),
+                         H5Dclose);
+  return static_cast<std::int64_t>(dimensions(dataset, path).front());
+}
+
+void H5Image::keep_rows(const std::string& path, std::int64_t rows) {
+  const H5Handle dataset(check(H5Dopen2(impl_->file.id(), path.c_str(), H5P_DEFAULT), path),
+                         H5Dclose);
+  std::vector<hsize_t> dims = dimensions(dataset, path);
+  dims.front() = static_cast<hsize_t>(rows);
+  check(H5Dset_extent(dataset.id(), dims.data()), path);
 }
 
 void H5Image::save(const std::filesystem::path& file) const {

@@ -135,21 +135,8 @@ struct H5Reader::Impl {
 };
 
 H5Reader::H5Reader(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
-  silence_h5();
   impl_->name = file.string();
-  std::string image = read_file(file);
-  const H5Handle access = h5_memory_access();
-  if (!image.empty()) H5Pset_file_image(access.id(), image.data(), image.size());
-  const std::string name = h5_memory_name();
-  if (!image.empty()) {
-    impl_->file = H5Handle(H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
-  }
-  if (!impl_->file) {
-    throw IoError(
-        fmt::format("{}: is not a readable HDF5 file (cut off or damaged): {}; use an "
-                    "earlier file or write it anew",
-                    impl_->name, image.empty() ? "it is empty" : h5_reason()));
-  }
+  impl_->file = open_in_memory(file, H5F_ACC_RDONLY);
 }
 H5Reader::~H5Reader() = default;
 H5Reader::H5Reader(H5Reader&&) noexcept = default;

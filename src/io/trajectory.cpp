@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "odpd/core/error.h"
+#include "odpd/io/file.h"
 
 namespace odpd {
 
@@ -115,6 +116,7 @@ void TrajectorySegments::append(const Frame& frame) {
   image_->append_row(group + "/velocity/value", frame.velocity);
   image_->append_row(group + "/box/edges/value",
                      frame.edges.empty() ? frame.box_size : frame.edges);
+  ++frames_;
 }
 
 void TrajectorySegments::write_single(const std::string& name, const Frame& frame) const {
@@ -123,29 +125,47 @@ void TrajectorySegments::write_single(const std::string& name, const Frame& fram
   single.image_->save(directory_ / name);
 }
 
+void TrajectorySegments::save_segment() const {
+  if (image_ != nullptr) image_->save(directory_ / segment_name(segment_));
+}
+
 void TrajectorySegments::close_segment() {
   if (image_ == nullptr) return;
-  image_->save(directory_ / segment_name(segment_));
+  save_segment();
   image_.reset();
+  frames_ = 0;
   ++segment_;
 }
 
-void TrajectorySegments::resume_at(std::int64_t segment) {
+void TrajectorySegments::reopen(std::int64_t segment, std::int64_t frames) {
   segment_ = segment;
+  frames_ = frames;
   image_.reset();
-  std::error_code error;
+  if (frames == 0) return;
+  const fs::path file = directory_ / segment_name(segment);
+  image_ = std::make_unique<H5Image>(file);
+  // A later part may have written more of it.
+  for (const char* rows : {"position/step", "position/time", "position/value", "image/value",
+                           "velocity/value", "box/edges/value"}) {
+    const std::string path = fmt::format("{}/{}", all, rows);
+    if (const std::int64_t there = image_->rows(path); there < frames)
+      throw IoError(fmt::format(
+          "{}: has {} frames where the checkpoint knows {}: it was cut or replaced since; restore "
+          "it, or continue into a new directory with --out",
+          file.string(), there, frames));
+    image_->keep_rows(path, frames);
+  }
+}
+
+void TrajectorySegments::delete_later() const {
+  std::error_code ignored;
   std::vector<fs::path> later;
-  for (const auto& entry : fs::directory_iterator(directory_, error)) {
+  for (const auto& entry : fs::directory_iterator(directory_, ignored)) {
     const auto number = segment_number(entry.path().filename().string());
-    if (number && *number >= segment) later.push_back(entry.path());
+    if (number && (*number > segment_ || (*number == segment_ && image_ == nullptr)))
+      later.push_back(entry.path());
   }
-  for (const fs::path& file : later) {
-    if (fs::remove(file, error) || !error) continue;
-    throw IoError(
-        fmt::format("{}: a segment from after the checkpoint cannot be removed: {}; "
-                    "check permissions",
-                    file.string(), error.message()));
-  }
+  for (const fs::path& file : later) remove_file(file);
 }
 
 }  // namespace odpd

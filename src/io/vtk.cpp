@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <set>
 #include <string>
 #include <string_view>
 
 #include "odpd/io/file.h"
 
 namespace odpd {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -72,6 +75,15 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
+std::string frame_name(std::int64_t step) { return fmt::format("frames/{:010}.vtp", step); }
+
+bool is_frame_name(const std::string& name) {
+  const fs::path path(name);
+  const std::string stem = path.stem().string();
+  return path.extension() == ".vtp" && stem.size() >= 10 &&
+         stem.find_first_not_of("0123456789") == std::string::npos;
+}
+
 }  // namespace
 
 void write_vtp(const std::filesystem::path& file, const Frame& frame) {
@@ -108,6 +120,57 @@ void write_pvd(const std::filesystem::path& file,
   }
   put(text, "</Collection>\n</VTKFile>\n");
   write_file_atomically(file, std::string_view(text.data(), text.size()));
+}
+
+VtkFrames::VtkFrames(std::filesystem::path directory) : directory_(std::move(directory)) {}
+
+void VtkFrames::write(const Frame& frame) const {
+  make_directory(directory_ / "frames");
+  write_vtp(directory_ / frame_name(frame.step), frame);
+}
+
+void VtkFrames::write_collection(std::vector<double> times, std::vector<std::int64_t> steps) const {
+  std::vector<std::pair<double, std::string>> frames;
+  for (std::size_t k = 0; k < times.size(); ++k)
+    frames.emplace_back(times[k], frame_name(steps.at(k)));
+  write_pvd(directory_ / "particles.pvd", frames);
+}
+
+void VtkFrames::append(const Frame& frame) {
+  write(frame);
+  times_.push_back(frame.time);
+  steps_.push_back(frame.step);
+  write_collection(times_, steps_);
+}
+
+void VtkFrames::append_last(const Frame& frame) {
+  if (!steps_.empty() && steps_.back() == frame.step) return;
+  write(frame);
+  auto times = times_;
+  auto steps = steps_;
+  times.push_back(frame.time);
+  steps.push_back(frame.step);
+  write_collection(std::move(times), std::move(steps));
+}
+
+void VtkFrames::resume_at(const std::vector<double>& times,
+                          const std::vector<std::int64_t>& steps) {
+  times_ = times;
+  steps_ = steps;
+  std::set<std::string> kept;
+  for (const std::int64_t step : steps_) kept.insert(frame_name(step));
+  std::error_code error;
+  if (!steps_.empty()) {
+    write_collection(times_, steps_);
+  } else if (fs::exists(directory_ / "particles.pvd", error)) {
+    remove_file(directory_ / "particles.pvd");
+  }
+  std::vector<fs::path> others;
+  for (const auto& entry : fs::directory_iterator(directory_ / "frames", error)) {
+    const std::string name = "frames/" + entry.path().filename().string();
+    if (is_frame_name(name) && !kept.contains(name)) others.push_back(entry.path());
+  }
+  for (const fs::path& file : others) remove_file(file);
 }
 
 }  // namespace odpd

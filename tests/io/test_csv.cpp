@@ -146,7 +146,11 @@ TEST(Series, ResumeRefusesAFileThatIsTooShort) {
       message_of<IoError>([&] { SeriesFile(directory / "s.csv", std::int64_t{6}); });
   EXPECT_NE(message.find("s.csv: has 5 bytes"), std::string::npos) << message;
   EXPECT_EQ(read_file(directory / "s.csv"), "step\n");
-  EXPECT_THROW(SeriesFile(directory / "absent.csv", std::int64_t{0}), IoError);
+  const std::string absent =
+      message_of<IoError>([&] { SeriesFile::check(directory / "absent.csv", 0); });
+  EXPECT_NE(absent.find("absent.csv: is missing"), std::string::npos) << absent;
+  SeriesFile::check(directory / "s.csv", 2);
+  EXPECT_EQ(read_file(directory / "s.csv"), "step\n") << "only the resumed one is cut";
 }
 
 }  // namespace

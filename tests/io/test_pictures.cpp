@@ -91,6 +91,28 @@ TEST(Pvd, ListsTimesAndEscapedNames) {
   EXPECT_NE(text.find("timestep=\"0.3333333333333333\""), std::string::npos);
 }
 
+TEST(VtkFrames, AnEndBeforeTheEndLeavesNoFrame) {
+  const TemporaryDirectory directory;
+  VtkFrames whole(directory.path());
+  for (const int step : {20, 40}) whole.append(sample_frame(2, 3, step));
+  const std::string twenty_forty = read_file(directory / "particles.pvd");
+  whole.append_last(sample_frame(2, 3, 40));
+  EXPECT_EQ(read_file(directory / "particles.pvd"), twenty_forty) << "it is there already";
+  whole.append_last(sample_frame(2, 3, 47));
+  EXPECT_NE(read_file(directory / "particles.pvd").find("0000000047.vtp"), std::string::npos);
+  EXPECT_EQ(whole.steps(), (std::vector<std::int64_t>{20, 40}));
+  write_file_atomically(directory / "frames/notes.vtp", std::string("not ours"));
+
+  VtkFrames resumed(directory.path());
+  resumed.resume_at(whole.times(), whole.steps());
+  EXPECT_EQ(read_file(directory / "particles.pvd"), twenty_forty);
+  EXPECT_FALSE(std::filesystem::exists(directory / "frames/0000000047.vtp"));
+  EXPECT_TRUE(std::filesystem::exists(directory / "frames/0000000040.vtp"));
+  EXPECT_TRUE(std::filesystem::exists(directory / "frames/notes.vtp"));
+  VtkFrames(directory.path()).resume_at({}, {});
+  EXPECT_FALSE(std::filesystem::exists(directory / "particles.pvd"));
+}
+
 Chart sample_chart() {
   Chart chart{"It's a `title` of $HOME_\xCE\xB7", "y", "v_x", false, false, {}};
   chart.curves.push_back({"measured", {1, 2, 3}, {1, 4, 9}, {0.1, 0.2, 0.3}, false, true});

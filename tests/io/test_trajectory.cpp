@@ -6,6 +6,7 @@
 #include "odpd/core/error.h"
 #include "odpd/io/file.h"
 #include "odpd/io/trajectory.h"
+#include "support/errors.h"
 
 namespace odpd {
 namespace {
@@ -75,7 +76,9 @@ TEST(Trajectory, ResumeDeletesLaterSegmentsAndWritesTheSameBytes) {
     write_file_atomically(directory / name, std::string("text"));
   }
   TrajectorySegments resumed = segments_in(directory);
-  resumed.resume_at(2);
+  resumed.reopen(2, 0);
+  EXPECT_TRUE(fs::exists(directory / "trajectory.0002.h5")) << "nothing is touched yet";
+  resumed.delete_later();
   EXPECT_TRUE(fs::exists(directory / "trajectory.0001.h5"));
   EXPECT_FALSE(fs::exists(directory / "trajectory.0002.h5"));
   EXPECT_FALSE(fs::exists(directory / "trajectory.0003.h5"));
@@ -90,6 +93,40 @@ TEST(Trajectory, ResumeDeletesLaterSegmentsAndWritesTheSameBytes) {
     EXPECT_EQ(read_file(directory / ("trajectory.000" + std::to_string(k) + ".h5")),
               bytes[static_cast<std::size_t>(k)]);
   }
+}
+
+TEST(Trajectory, GoesOnWithAnOpenSegment) {
+  const TemporaryDirectory directory;
+  TrajectorySegments whole = segments_in(directory);
+  for (int k = 0; k < 5; ++k) whole.append(sample_frame(3, 4, k));
+  whole.write_single("whole.h5", sample_frame(3, 4, 4));
+  TrajectorySegments part = segments_in(directory);
+  part.close_segment();
+  for (int k = 0; k < 3; ++k) part.append(sample_frame(3, 4, k));
+  part.save_segment();
+  EXPECT_EQ(part.segment(), 0);
+  EXPECT_EQ(part.frames(), 3);
+  // More of it came onto the disk after the checkpoint that knows three frames.
+  part.append(sample_frame(3, 4, 7));
+  part.save_segment();
+  write_file_atomically(directory / "trajectory.0001.h5", std::string("text"));
+  TrajectorySegments resumed = segments_in(directory);
+  resumed.reopen(0, 3);
+  resumed.delete_later();
+  EXPECT_TRUE(fs::exists(directory / "trajectory.0000.h5"));
+  EXPECT_FALSE(fs::exists(directory / "trajectory.0001.h5"));
+  for (int k = 3; k < 5; ++k) resumed.append(sample_frame(3, 4, k));
+  resumed.close_segment();
+  const H5Reader reader(directory / "trajectory.0000.h5");
+  const std::string position = "/particles/all/position/";
+  EXPECT_EQ(reader.read_integers(position + "step"), (std::vector<std::int64_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(reader.shape("/particles/all/box/edges/value").front(), 5);
+  for (int k = 0; k < 5; ++k)
+    EXPECT_EQ(reader.read_doubles(position + "value", k), sample_frame(3, 4, k).position);
+  support::expect_error<IoError>([&] { segments_in(directory).reopen(0, 6); },
+                                 {"trajectory.0000.h5", "5 frames", "knows 6", "--out"});
+  support::expect_error<IoError>([&] { segments_in(directory).reopen(4, 1); },
+                                 {"trajectory.0004.h5"});
 }
 
 TEST(Trajectory, IsH5mdToPython) {

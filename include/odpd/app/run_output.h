@@ -13,13 +13,13 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "odpd/app/simulation.h"
 #include "odpd/io/csv.h"
 #include "odpd/io/run_lock.h"
 #include "odpd/io/trajectory.h"
+#include "odpd/io/vtk.h"
 
 namespace odpd {
 
@@ -34,13 +34,15 @@ class RunOutput {
 
   /// Starts all files anew and writes case.toml.
   void begin();
+  /// Throws IoError where the files of this directory cannot go on from the checkpoint; touches nothing.
+  void check(CheckpointReader& in);
   /// Continues the files of this directory from what the checkpoint says of them.
   void resume(CheckpointReader& in);
   /// Series, trajectory, VTK and checkpoint as they are due after the step just done.
   void after_step();
   /// A checkpoint of this moment, with all files flushed up to it first. Throws BlowUpError instead where the state has
-  /// blown up.
-  void checkpoint();
+  /// blown up. `ends_segment`: of the trajectory; the end of a run does not, as it may go on.
+  void checkpoint(bool ends_segment = false);
   /// Writes what is buffered, as far as possible: for the way out after an error.
   void salvage() noexcept;
   /// After a step that failed or a state that has blown up: a checkpoint of this moment where its state is sound, and
@@ -50,13 +52,14 @@ class RunOutput {
   void close();
   /// Tables and pictures.
   void write_results(const Results& results);
+  /// summary.json, in place of that of an earlier part.
+  void write_summary(const std::string& text);
 
   const std::filesystem::path& directory() const { return directory_; }
 
  private:
   std::filesystem::path series_path(std::size_t k) const;
   void first_frame();
-  void write_vtk_frame();
 
   std::filesystem::path directory_;
   const Config& config_;
@@ -64,7 +67,7 @@ class RunOutput {
   TrajectorySegments trajectory_;
   std::vector<std::unique_ptr<SeriesFile>>
       series_;  // one per observer, null where none was asked for
-  std::vector<std::pair<double, std::string>> vtk_frames_;
+  VtkFrames vtk_;
 };
 
 }  // namespace odpd

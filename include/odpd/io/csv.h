@@ -31,6 +31,8 @@ class SeriesFile {
   /// Continues an existing one at `bytes`, dropping what lies beyond. Throws IoError when it is
   /// shorter.
   SeriesFile(const std::filesystem::path& file, std::int64_t bytes);
+  /// Throws IoError where the constructor above would, and touches nothing.
+  static void check(const std::filesystem::path& file, std::int64_t bytes);
   void append(const std::vector<double>& row);
   /// Writes what is buffered (write, checked); `sync` also fsyncs. On failure the file is cut back
   /// to the flush before, and the lines stay buffered. Nothing is flushed at the end of its life.

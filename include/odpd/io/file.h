@@ -24,4 +24,7 @@ void make_directory(const std::filesystem::path& directory);
 /// the new name, or "" when there was no directory to move.
 std::filesystem::path move_aside(const std::filesystem::path& directory);
 
+/// Removes what a restart writes anew; nothing when it is not there. Throws IoError.
+void remove_file(const std::filesystem::path& file);
+
 }  // namespace odpd

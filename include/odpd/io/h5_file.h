@@ -12,6 +12,8 @@ namespace odpd {
 class H5Image {
  public:
   H5Image();
+  /// Goes on with a file that was saved. Throws IoError when it is missing, cut off or not HDF5.
+  explicit H5Image(const std::filesystem::path& file);
   ~H5Image();
   H5Image(H5Image&&) noexcept;
   H5Image& operator=(H5Image&&) noexcept;
@@ -42,6 +44,9 @@ class H5Image {
                    bool integers);
   void append_row(const std::string& path, const std::vector<double>& row);
   void append_row(const std::string& path, const std::vector<std::int64_t>& row);
+  std::int64_t rows(const std::string& path) const;
+  /// Drops all rows but the first `rows`.
+  void keep_rows(const std::string& path, std::int64_t rows);
 
   /// Writes the image as it is now through write_file_atomically; more can be added afterwards.
   void save(const std::filesystem::path& file) const;

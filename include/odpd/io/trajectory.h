@@ -25,19 +25,25 @@ class TrajectorySegments {
   void append(const Frame& frame);
   /// Writes one frame by itself, as a file of that name in the directory.
   void write_single(const std::string& name, const Frame& frame) const;
-  /// Writes the open segment (nothing when it is empty) and starts a new one.
+  /// Writes the open segment (nothing when it is empty) as it is now.
+  void save_segment() const;
+  /// The same, and starts a new one.
   void close_segment();
-  /// Number of the open segment: state for a restart.
+  // State for a restart: number of the open segment, and its frames so far.
   std::int64_t segment() const { return segment_; }
-  /// After a restart: continue with segment `segment`, deleting that file and all later ones.
-  void resume_at(std::int64_t segment);
+  std::int64_t frames() const { return frames_; }
+  /// After a restart: takes up segment `segment` with its first `frames` frames. Touches no file. Throws IoError when the
+  /// segment has fewer.
+  void reopen(std::int64_t segment, std::int64_t frames);
+  /// Deletes the segments after the open one, and the open one when it has no frames.
+  void delete_later() const;
 
  private:
   void open(const Frame& frame);
   void open_box(const Frame& frame);
   std::filesystem::path directory_;
   std::string case_text_, version_, title_;
-  std::int64_t segment_ = 0;
+  std::int64_t segment_ = 0, frames_ = 0;
   std::unique_ptr<H5Image> image_;
 };
 
