@@ -132,8 +132,7 @@ std::string BlowUpWatch<D>::judge_temperatures(const Stage<D>& stage, const Pair
         kT, multiple_);
   // The scatter S lets a small random arrangement pass now and then, so that it says nothing of the start.
   const bool settled = square <= 3.0 * (kT * curvature + driven);
-  const bool had_time =
-      stage.time > relaxations * explicit_step_limit(scene_.pair_moments(), s.mass).value_or(0.0);
+  const bool had_time = stage.time > relaxations * repulsion_limit().value_or(0.0);
   ordered_ = ordered_ || settled || (sound && had_time);
   return {};
 }

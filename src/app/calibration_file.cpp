@@ -104,12 +104,12 @@ std::optional<Calibration> read_calibration(const Config& config) {
   const Config fluid = config.table("fluid");
   if (!names_calibration(fluid)) return std::nullopt;
   const std::string make = "make it with odpd calibrate CASE";
-  const std::filesystem::path file = config.directory() / fluid.text("calibration");
+  const std::string file = fluid.file("calibration").string();
   try {
-    const JsonDocument json(file);
+    const JsonDocument json(fluid.file_text("calibration", make), file);
     const auto input = [&](const char* name) { return json.number({"inputs", name}); };
     Calibration c;
-    c.file = file.string();
+    c.file = file;
     c.density = input("density");
     c.mass = input("mass");
     c.fluid.kT = input("kT");

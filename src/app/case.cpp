@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -134,9 +133,9 @@ void read_start_csv(SceneSettings<D>& scene) {
 
 // Columns i and j (particles of the start file, from 0), and if wanted H, r_0 and r_max.
 template <int D>
-void read_bonds_csv(SceneSettings<D>& scene) {
+void read_bonds_csv(const Config& config, SceneSettings<D>& scene) {
   const std::string& file = scene.bonds_file;
-  const TextTable table = read_csv(file);
+  const TextTable table = parse_csv(config.table("bonds").file_text("file"), file);
   const auto column = [&](const char* name) {
     return static_cast<std::size_t>(std::find(table.columns.begin(), table.columns.end(), name) -
                                     table.columns.begin());
@@ -306,27 +305,22 @@ void read_start_file(SceneSettings<D>& scene) {
   }
   if (scene.start_positions.empty())
     throw ConfigError(fmt::format("{}: there are no fluid particles in it", scene.start_file));
-  if (!scene.bonds_file.empty()) read_bonds_csv(scene);
+}
+
+template <int D>
+void read_bonds_file(const Config& config, SceneSettings<D>& scene) {
+  if (!scene.bonds_file.empty()) read_bonds_csv(config, scene);
 }
 
 std::string portable_case(const Config& config) {
   std::vector<std::string> absolute;
-  const auto add = [&](const Config& entry, const std::string& path, const std::string& key) {
-    if (!entry.has(key) || entry.text(key).empty()) return;
-    const std::filesystem::path file = config.directory() / entry.text(key);
+  for (const auto& [key, file] : config.files()) {
     std::string quoted;
     for (const char letter : std::filesystem::absolute(file).lexically_normal().string()) {
       if (letter == '"' || letter == '\\') quoted += '\\';
       quoted += letter;
     }
-    absolute.push_back(fmt::format("{}.{}=\"{}\"", path, key, quoted));
-  };
-  add(config.table("start"), "start", "file");
-  add(config.table("bonds"), "bonds", "file");
-  const std::vector<Config> pairs = config.tables("pair");
-  for (const std::string& key : model_file_keys()) {
-    add(config.table("fluid"), "fluid", key);
-    for (std::size_t k = 0; k < pairs.size(); ++k) add(pairs[k], fmt::format("pair.{}", k), key);
+    absolute.push_back(fmt::format("{}=\"{}\"", key, quoted));
   }
   if (absolute.empty()) return config.resolved();
   return Config::from_text(config.resolved(), "case.toml", absolute).resolved();
@@ -334,5 +328,7 @@ std::string portable_case(const Config& config) {
 
 template void read_start_file<2>(SceneSettings<2>&);
 template void read_start_file<3>(SceneSettings<3>&);
+template void read_bonds_file<2>(const Config&, SceneSettings<2>&);
+template void read_bonds_file<3>(const Config&, SceneSettings<3>&);
 
 }  // namespace odpd

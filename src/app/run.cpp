@@ -10,6 +10,7 @@
 #include "odpd/app/interrupt.h"
 #include "odpd/app/live_line.h"
 #include "odpd/app/report.h"
+#include "odpd/app/restart.h"
 #include "odpd/app/run_output.h"
 #include "odpd/app/shell.h"
 #include "odpd/app/simulation.h"
@@ -85,8 +86,9 @@ int conclude(const Simulation<D>& simulation, RunOutput<D>& output) {
 }
 
 template <int D>
-int run_in(const RunOptions& options, const Config& config, const CaseSettings& settings) {
-  Simulation<D> simulation(config, settings);
+int run_in(const RunOptions& options, const Config& config, const CaseSettings& settings,
+           CheckpointReader* checkpoint) {
+  Simulation<D> simulation(config, settings, {}, checkpoint);
   set_threads(options.threads, simulation.scene().particles().size());
   if (options.dry_run) {
     fmt::print("{}", dry_run_text(simulation));
@@ -104,11 +106,7 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
         settings.clock.dt, 2.0 * *limit));
 
   const fs::path directory = output_directory(options, settings);
-  std::optional<CheckpointReader> checkpoint;
-  if (!options.restart.empty()) {
-    checkpoint.emplace(options.restart);
-    simulation.load(*checkpoint);
-  }
+  if (checkpoint) simulation.load(*checkpoint);
   const bool continues =
       checkpoint && same_directory(directory, fs::absolute(options.restart).parent_path());
   // Whatever may be refused is, before anything of a directory that exists is touched.
@@ -142,9 +140,15 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
 
 int run_case(const RunOptions& options) {
   const Config config = open_case(options.case_path, options.overrides);
+  std::optional<CheckpointReader> checkpoint;
+  if (!options.restart.empty()) {
+    checkpoint.emplace(options.restart);
+    take_file_texts(*checkpoint, config);
+  }
   const CaseSettings settings = read_case(config, case_name(options.case_path));
-  return settings.dimension == 2 ? run_in<2>(options, config, settings)
-                                 : run_in<3>(options, config, settings);
+  CheckpointReader* const from = checkpoint ? &*checkpoint : nullptr;
+  return settings.dimension == 2 ? run_in<2>(options, config, settings, from)
+                                 : run_in<3>(options, config, settings, from);
 }
 
 }  // namespace odpd

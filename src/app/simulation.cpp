@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "odpd/app/calibration_file.h"
+#include "odpd/app/restart.h"
 #include "odpd/core/error.h"
 #include "odpd/core/log.h"
 
@@ -15,9 +16,14 @@ namespace odpd {
 namespace {
 
 template <int D>
-SceneSettings<D> scene_of(const Config& config) {
+SceneSettings<D> scene_of(const Config& config, CheckpointReader* restart) {
   SceneSettings<D> scene = read_scene_settings<D>(config, read_calibration(config));
-  read_start_file(scene);
+  if (restart) {
+    take_start(*restart, scene);
+  } else {
+    read_start_file(scene);
+  }
+  read_bonds_file(config, scene);
   return scene;
 }
 
@@ -25,11 +31,12 @@ SceneSettings<D> scene_of(const Config& config) {
 
 template <int D>
 Simulation<D>::Simulation(const Config& config, CaseSettings settings,
-                          const std::vector<ObserverKind<D>>& own_observers)
+                          const std::vector<ObserverKind<D>>& own_observers,
+                          CheckpointReader* restart)
     : config_(config),
       settings_(std::move(settings)),
       clock_(settings_.clock),
-      scene_(scene_of<D>(config)),
+      scene_(scene_of<D>(config, restart)),
       dynamics_(scene_.box(), scene_.particles(), scene_.model(), scene_,
                 make_solver(settings_.solver), settings_.dynamics),
       integrator_(make_integrator<D>(settings_.integrator)),

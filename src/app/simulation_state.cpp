@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "odpd/app/same_case.h"
+#include "odpd/app/restart.h"
 #include "odpd/app/simulation.h"
 #include "odpd/core/error.h"
 #include "odpd/core/isa.h"
@@ -14,7 +14,8 @@ namespace odpd {
 template <int D>
 void Simulation<D>::save(CheckpointWriter& out) const {
   StateWriter& run = out.component("run");
-  save_case(config_, scene_, run);
+  run.write_text("case", config_.resolved());
+  save_inputs(config_, scene_.settings(), out);
   run.write("counts", std::vector<std::int64_t>{clock_.step, alarm_crossings_});
   const PhaseSeconds& phases = dynamics_.phases();
   run.write("phase_seconds", std::vector<double>(phases.seconds.begin(), phases.seconds.end()));
@@ -32,7 +33,7 @@ void Simulation<D>::save(CheckpointWriter& out) const {
 template <int D>
 void Simulation<D>::load(CheckpointReader& in) {
   const StateReader& run = in.component("run");
-  require_same_case(run, config_, scene_);
+  require_same_case(in, config_);
   const std::vector<std::int64_t> counts = run.read_integers("counts");
   clock_.step = counts.at(0);
   if (clock_.step > clock_.total_steps)

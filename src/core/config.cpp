@@ -370,6 +370,39 @@ ConfigValues Config::flattened() const { return flat_values(tree_->root); }
 
 std::filesystem::path Config::directory() const { return tree_->directory; }
 
+std::filesystem::path Config::file(const std::string& key) const {
+  const std::filesystem::path path = tree_->directory / text(key);
+  tree_->file_of_key[member_path(node_->path, key)] = path.string();
+  return path;
+}
+
+std::string Config::file_text(const std::string& key, const std::string& remedy) const {
+  const std::filesystem::path path = file(key);
+  const std::string at = member_path(node_->path, key);
+  if (tree_->texts_given) {
+    const auto found = tree_->text_of_key.find(at);
+    if (found != tree_->text_of_key.end()) return found->second;
+    fail(key, "the checkpoint holds no such file: it belongs to another case");
+  }
+  std::string reason;
+  const auto text = odpd::file_text(path, reason);
+  if (!text) fail(key, fmt::format("{}: cannot be read: {}; {}", path.string(), reason, remedy));
+  return tree_->text_of_key[at] = *text;
+}
+
+ConfigValues Config::files() const {
+  return {tree_->file_of_key.begin(), tree_->file_of_key.end()};
+}
+
+ConfigValues Config::file_texts() const {
+  return {tree_->text_of_key.begin(), tree_->text_of_key.end()};
+}
+
+void Config::use_file_texts(const ConfigValues& texts) const {
+  tree_->text_of_key = {texts.begin(), texts.end()};
+  tree_->texts_given = true;
+}
+
 bool is_plain_name(const std::string& word) {
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||

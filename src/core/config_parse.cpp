@@ -99,21 +99,6 @@ std::unique_ptr<ConfigNode> parse_document(const std::string& text, const std::s
 
 // ---- files and includes
 
-/// The text of a file, or nothing and the reason.
-std::optional<std::string> file_text(const fs::path& file, std::string& reason) {
-  std::error_code ignored;
-  errno = fs::is_directory(file, ignored) ? EISDIR : 0;
-  if (errno == 0) {
-    std::ifstream stream(file, std::ios::binary);
-    if (stream) {
-      std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-      if (!stream.bad()) return text;
-    }
-  }
-  reason = errno != 0 ? std::strerror(errno) : "reading failed";
-  return std::nullopt;
-}
-
 fs::path case_file(const fs::path& given) {
   std::error_code ignored;
   return fs::is_directory(given, ignored) ? given / "case.toml" : given;
@@ -285,6 +270,20 @@ void apply_override(ConfigNode& root, const std::string& assignment) {
 }
 
 }  // namespace
+
+std::optional<std::string> file_text(const fs::path& file, std::string& reason) {
+  std::error_code ignored;
+  errno = fs::is_directory(file, ignored) ? EISDIR : 0;
+  if (errno == 0) {
+    std::ifstream stream(file, std::ios::binary);
+    if (stream) {
+      std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+      if (!stream.bad()) return text;
+    }
+  }
+  reason = errno != 0 ? std::strerror(errno) : "reading failed";
+  return std::nullopt;
+}
 
 std::unique_ptr<ConfigTree> parse_config(const std::string& text, const std::string& name,
                                          const std::vector<std::string>& overrides) {

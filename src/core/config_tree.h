@@ -2,7 +2,9 @@
 // The tree behind Config: values with the place they came from, and who asked for what.
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -60,12 +62,17 @@ struct ConfigTree {
   ConfigNode root;
   std::string name;
   std::filesystem::path directory;
+  std::map<std::string, std::string> file_of_key;  ///< every file that was asked for
+  std::map<std::string, std::string> text_of_key;
+  bool texts_given = false;  ///< text_of_key came from elsewhere, and is all there is
 };
 
 // config_parse.cpp
 /// Text to tree, includes and overrides applied, all paths set.
 std::unique_ptr<ConfigTree> parse_config(const std::string& text, const std::string& name,
                                          const std::vector<std::string>& overrides);
+/// The text of a file, or nothing and the reason.
+std::optional<std::string> file_text(const std::filesystem::path& file, std::string& reason);
 std::unique_ptr<ConfigTree> read_config(const std::filesystem::path& file,
                                         const std::vector<std::string>& overrides);
 

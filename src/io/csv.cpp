@@ -77,7 +77,10 @@ void write_csv(const std::filesystem::path& file, const Table& table) {
 }
 
 TextTable read_csv(const std::filesystem::path& file) {
-  const std::string text = read_file(file);
+  return parse_csv(read_file(file), file.string());
+}
+
+TextTable parse_csv(const std::string& text, const std::string& name) {
   std::string_view rest = text;
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // byte order mark of some editors
   TextTable table;
@@ -94,14 +97,14 @@ TextTable read_csv(const std::filesystem::path& file) {
     if (row.size() != table.columns.size()) {
       throw IoError(fmt::format(
           "{}:{}: {} values where the header names {} columns ({}); give one value per column",
-          file.string(), number, row.size(), table.columns.size(), fmt::join(table.columns, ",")));
+          name, number, row.size(), table.columns.size(), fmt::join(table.columns, ",")));
     }
     table.rows.push_back(std::move(row));
     table.line.push_back(number);
   }
   if (table.columns.empty()) {
-    throw IoError(fmt::format("{}: is empty; a line with the names of the columns is needed first",
-                              file.string()));
+    throw IoError(
+        fmt::format("{}: is empty; a line with the names of the columns is needed first", name));
   }
   return table;
 }

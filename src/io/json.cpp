@@ -104,11 +104,13 @@ struct JsonDocument::Impl {
   }
 };
 
-JsonDocument::JsonDocument(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
-  impl_->value = Value::parse(read_file(file), nullptr, false);
+JsonDocument::JsonDocument(const std::filesystem::path& file)
+    : JsonDocument(read_file(file), file.string()) {}
+JsonDocument::JsonDocument(const std::string& text, const std::string& name)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->value = Value::parse(text, nullptr, false);
   if (impl_->value.is_discarded())
-    throw IoError(
-        fmt::format("{}: is not JSON; remove it, so that it is written again", file.string()));
+    throw IoError(fmt::format("{}: is not JSON; remove it, so that it is written again", name));
 }
 JsonDocument::~JsonDocument() = default;
 JsonDocument::JsonDocument(JsonDocument&&) noexcept = default;

@@ -79,24 +79,6 @@ ModelParameters DpdModel<D>::parameters() const {
 }
 
 template <int D>
-void DpdModel<D>::save(StateWriter& out) const {
-  if (fluid_.calibration)
-    out.write("calibrated_gamma", std::vector<double>{fluid_.calibration->fluid.gamma});
-}
-
-template <int D>
-void DpdModel<D>::check(const StateReader& in) const {
-  const auto& calibration = fluid_.calibration;
-  const bool same = in.has("calibrated_gamma") == calibration.has_value() &&
-                    (!calibration || in.read_doubles("calibrated_gamma") ==
-                                         std::vector<double>{calibration->fluid.gamma});
-  if (!same)
-    throw ConfigError(
-        "the checkpoint has another friction than the file of fluid.calibration gives now: "
-        "restore that file");
-}
-
-template <int D>
 void DpdModel<D>::write_edges(const PairList<D>& list, const Box<D>& box,
                               std::span<const Vec<D>> positions, const Particles<D>& particles,
                               PairNetwork<D>& network) const {

@@ -14,13 +14,12 @@ template <int D>
 struct Row {
   const char* name;
   std::shared_ptr<const PairModel<D>> (*read)(const FluidKeys&);
-  bool physical_inputs;                  // takes eta, ..., calibration
-  std::vector<std::string> file_keys{};  // of [fluid] and [[pair]]
+  bool physical_inputs;  // takes eta, ..., calibration
 };
 
 template <int D>
 const std::vector<Row<D>>& table() {
-  static const std::vector<Row<D>> rows{{"dpd", &read_dpd<D>, true, {"calibration"}}};
+  static const std::vector<Row<D>> rows{{"dpd", &read_dpd<D>, true}};
   return rows;
 }
 
@@ -50,13 +49,6 @@ std::shared_ptr<const PairModel<D>> default_pair_model() {
 std::vector<std::string> dynamical_model_keys() {
   std::vector<std::string> keys = friction_keys();
   keys.insert(keys.end(), {"eta", "Sc"});
-  return keys;
-}
-
-std::vector<std::string> model_file_keys() {
-  std::vector<std::string> keys;
-  for (const auto& row : table<2>())
-    keys.insert(keys.end(), row.file_keys.begin(), row.file_keys.end());
   return keys;
 }
 

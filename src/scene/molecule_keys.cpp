@@ -193,7 +193,7 @@ void read_bonds_file(const Config& config, SceneSettings<D>& scene) {
         "file",
         "it names particles by their place in the start file: give start.from = \"file\", or "
         "use [[molecule]]");
-  scene.bonds_file = (config.directory() / bonds.text("file")).string();
+  scene.bonds_file = bonds.file("file").string();
   scene.file_bond = read_bond(bonds, 0.0, true);
 }
 

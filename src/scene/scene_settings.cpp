@@ -230,8 +230,7 @@ void read_start(const Config& config, SceneSettings<D>& scene) {
   scene.start = from == "random"    ? StartKind::random
                 : from == "lattice" ? StartKind::lattice
                                     : StartKind::file;
-  if (scene.start == StartKind::file)
-    scene.start_file = (config.directory() / start.text("file")).string();
+  if (scene.start == StartKind::file) scene.start_file = start.file("file").string();
   // Molecules lie on top of a lattice.
   const bool overlaps = scene.start == StartKind::random ||
                         (scene.start == StartKind::lattice && !config.tables("molecule").empty());

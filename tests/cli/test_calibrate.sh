@@ -68,8 +68,14 @@ expect_text run/summary.json '"calibration"' '"gamma_stderr"'
 expect_exit 0 "$odpd" run run/case.toml --dry-run
 expect_exit 0 "$odpd" run asked --restart run/checkpoint.h5 --set run.duration=0.2 --quiet
 sed 's/"gamma": [0-9.]*,/"gamma": 7.0,/' found.1/calibration.json >found.1/other.json
-expect_error 1 "$odpd" run asked --restart run/checkpoint.h5 --set run.duration=0.3 --quiet \
-  --set 'fluid.calibration="../found.1/other.json"' -- 'another friction' 'restore'
+# A restart keeps the friction of its checkpoint, whatever became of the file.
+friction() { "$python" -c 'import json, sys; print(json.load(open(sys.argv[1]))["fluid"])' "$1/summary.json"; }
+expect_exit 0 "$odpd" run asked --restart run/checkpoint.h5 --set run.duration=0.3 --quiet \
+  --set 'fluid.calibration="../found.1/other.json"' --out other_file
+expect test "$(friction run | grep -c "$gamma")" -eq 1 -a "$(friction run | sed 's/other.json/calibration.json/')" = \
+  "$(friction other_file | sed 's/other.json/calibration.json/')"
+expect_exit 0 "$odpd" run asked --restart run/checkpoint.h5 --set run.duration=0.3 --quiet \
+  --set 'fluid.calibration="nowhere.json"' --out no_file
 
 for change in density=4.1 kT=1.1 a=19.0 s_bar=1.1 s=0.6 cutoff=1.1 mass=0.1 eta=5.1; do
   expect_error 1 "$odpd" run asked --dry-run --set fluid.$change -- "fluid.${change%%=*}" 'was measured for' 'odpd calibrate'

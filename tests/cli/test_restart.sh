@@ -137,60 +137,6 @@ expect diff -r part_copy refused
 head -n 3 part_copy/thermo_series.csv >refused/thermo_series.csv
 expect_error 3 run channel --restart refused/checkpoint.h5 -- thermo_series.csv
 
-# --- another start file: the particles of the checkpoint go on, and what is measured is theirs ---
-write_periodic mixed
-sed -i '/^density/d' mixed/case.toml
-cat >>mixed/case.toml <<'CASE'
-
-[[species]]
-name = "a"
-fraction = 0.75
-
-[[species]]
-name = "b"
-fraction = 0.25
-
-[start]
-from = "file"
-file = "few.csv"
-
-[[observe]]
-kind = "rdf"
-every = 5
-
-[[observe]]
-kind = "msd"
-window = 0.05
-every = 1
-CASE
-# start_csv EVERY: 64 particles on a grid, one of so many of species b.
-start_csv() {
-  printf 'x,y,species\n'
-  local k species
-  for ((k = 0; k < 64; k++)); do
-    species=a
-    [ $((k % $1)) -eq 0 ] && species=b
-    printf '%d.%d,%d.%d,%s\n' $((k / 16)) $((k / 8 % 2 * 5)) $((k % 8 / 2)) $((k % 2 * 5)) $species
-  done
-}
-start_csv 4 >mixed/few.csv
-start_csv 3 >mixed/many.csv
-expect_exit 0 run mixed --out mixed_whole
-expect_exit 0 run mixed --set run.duration=0.07 --out mixed_part
-expect_exit 0 run mixed --set 'start.file="many.csv"' --restart mixed_part/checkpoint.h5
-same_run mixed_whole mixed_part
-# Bonds from a file, restarted from anywhere.
-cp -r mixed joined
-printf 'i,j,r_0\n0,1,0.5\n1,17,0.7\n' >joined/bonds.csv
-printf '\n[bonds]\nfile = "bonds.csv"\nH = 50.0\n' >>joined/case.toml
-expect_exit 0 run joined --out joined_whole
-expect_exit 0 run joined --set run.duration=0.07 --out joined_part
-expect_exit 0 run joined_part --restart joined_part/checkpoint.h5
-expect_exit 0 run joined --restart joined_part/checkpoint.h5
-same_run joined_whole joined_part
-printf 'i,j,r_0\n0,1,0.5\n1,18,0.7\n' >joined/bonds.csv
-expect_error 1 run joined --restart joined_part/checkpoint.h5 -- 'other bonds'
-
 # --- a walled trajectory starts a walled case, also with particles behind a soft wall's surface ---
 expect_exit 0 run channel --set wall.0.stiffness=5.0 --set wall.1.stiffness=5.0 --set run.duration=0.6 --out soft
 frames=$(find soft -name 'trajectory.*.h5' | sort | tail -n 1)

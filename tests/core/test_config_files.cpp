@@ -161,4 +161,33 @@ TEST_F(ConfigFiles, a_missing_file_is_a_configuration_error) {
   expect_contains(error_of([&] { Config::from_file(root_); }), "Is a directory");
 }
 
+TEST_F(ConfigFiles, texts_of_files_are_kept_and_taken_from_elsewhere) {
+  write("data/forces.csv", "r,f\n0,1\n");
+  const auto file = write(
+      "case.toml", "start.file = \"frames.h5\"\n[[pair]]\nforce_file = \"data/forces.csv\"\n");
+  const Config c = Config::from_file(file);
+  EXPECT_TRUE(c.files().empty());
+  EXPECT_EQ(c.table("start").file("file"), root_ / "frames.h5");
+  const Config pair = c.tables("pair").at(0);
+  EXPECT_EQ(pair.file_text("force_file"), "r,f\n0,1\n");
+  const std::string forces = (root_ / "data/forces.csv").string();
+  EXPECT_EQ(c.files(), (odpd::ConfigValues{{"pair.0.force_file", forces},
+                                           {"start.file", (root_ / "frames.h5").string()}}));
+  const odpd::ConfigValues texts{{"pair.0.force_file", "r,f\n0,1\n"}};
+  EXPECT_EQ(c.file_texts(), texts);
+  c.reject_unread();
+
+  std::filesystem::remove(forces);
+  const Config gone = Config::from_file(file);
+  const std::string error =
+      error_of([&] { gone.tables("pair").at(0).file_text("force_file", "make it"); });
+  expect_contains(
+      error, "case.toml:3: key 'pair.0.force_file': " + forces + ": cannot be read: No such file");
+  expect_contains(error, "; make it");
+  gone.use_file_texts(texts);
+  EXPECT_EQ(gone.tables("pair").at(0).file_text("force_file"), "r,f\n0,1\n");
+  EXPECT_EQ(gone.file_texts(), texts);
+  expect_contains(error_of([&] { gone.table("start").file_text("file"); }), "holds no such file");
+}
+
 }  // namespace

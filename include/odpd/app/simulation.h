@@ -21,9 +21,11 @@ template <int D>
 class Simulation {
  public:
   /// Builds everything the case names and rejects keys that nobody read; `own_observers`: kinds that [[observe]] may name besides
-  /// those of odpd. Throws ConfigError, IoError.
+  /// those of odpd. With `restart`, whose file texts `config` has (`take_file_texts`), no file is read; `load` follows. Throws
+  /// ConfigError, IoError.
   Simulation(const Config& config, CaseSettings settings,
-             const std::vector<ObserverKind<D>>& own_observers = {});
+             const std::vector<ObserverKind<D>>& own_observers = {},
+             CheckpointReader* restart = nullptr);
 
   const CaseSettings& settings() const { return settings_; }
   const Clock& clock() const { return clock_; }

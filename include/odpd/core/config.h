@@ -79,6 +79,19 @@ class Config {
   /// The same for each element of the array `key`, which is required.
   std::vector<ConfigValues> elements(const std::string& key) const;
 
+  // Files that a case names, relative to it. Their texts are kept, so that a checkpoint can hold all that a run was made
+  // from.
+  /// Path of the file that `key` names. `files` lists it from then on.
+  std::filesystem::path file(const std::string& key) const;
+  /// The text of that file; ConfigError with `remedy` when it cannot be read.
+  std::string file_text(const std::string& key, const std::string& remedy = "check the name") const;
+  /// (dotted path of the key, file) of all that `file` and `file_text` were asked for.
+  ConfigValues files() const;
+  /// (dotted path of the key, text) of all that `file_text` gave.
+  ConfigValues file_texts() const;
+  /// `file_text` gives these from now on and looks at no file.
+  void use_file_texts(const ConfigValues& texts) const;
+
   /// Throws ConfigError "FILE:LINE: key 'a.b.c': MESSAGE" (or "--set a.b.c: MESSAGE"); an empty key
   /// stands for this table. A key that the case does not give is placed at its table, or the file.
   [[noreturn]] void fail(const std::string& key, const std::string& message) const;

@@ -22,6 +22,8 @@ struct TextTable {
 /// around words dropped. Throws IoError naming file and line for a missing file, ragged rows, or an
 /// empty file.
 TextTable read_csv(const std::filesystem::path& file);
+/// The same of the text of a file; `name` stands for it in messages.
+TextTable parse_csv(const std::string& text, const std::string& name);
 
 /// A growing CSV file. Lines are buffered and written with checked writes by `flush`.
 class SeriesFile {

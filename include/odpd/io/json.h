@@ -44,6 +44,8 @@ class JsonDocument {
  public:
   /// Throws IoError naming the file when it cannot be read or is no JSON.
   explicit JsonDocument(const std::filesystem::path& file);
+  /// The same of the text of a file; `name` stands for it in messages.
+  JsonDocument(const std::string& text, const std::string& name);
   ~JsonDocument();
   JsonDocument(JsonDocument&&) noexcept;
   using Path = std::vector<std::string>;

@@ -48,9 +48,6 @@ class DpdModel : public PairModel<D> {
   bool conservative() const override { return conservative_; }
   bool thermal() const override { return thermal_; }
   ModelParameters parameters() const override;
-  /// The calibrated friction, where there is one.
-  void save(StateWriter& out) const override;
-  void check(const StateReader& in) const override;
 
   const DpdParameters& parameters(Site site_i, Site site_j) const {
     return entry(site_i, site_j).p;

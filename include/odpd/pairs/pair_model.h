@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "odpd/core/archive.h"
 #include "odpd/geometry/pair_list.h"
 #include "odpd/pairs/densities.h"
 #include "odpd/pairs/network.h"
@@ -55,9 +54,6 @@ class PairModel {
     return 0.0;
   }
   virtual ModelParameters parameters() const { return {}; }
-  /// To the checkpoint: what came from files besides the case. `check` throws ConfigError where that is not what it was.
-  virtual void save(StateWriter&) const {}
-  virtual void check(const StateReader&) const {}
 };
 
 }  // namespace odpd

@@ -23,7 +23,5 @@ std::shared_ptr<const PairModel<D>> default_pair_model();
 
 /// Keys of [fluid] that have no part in the equilibrium distribution of a model; a table stands for all its keys.
 std::vector<std::string> dynamical_model_keys();
-/// Keys of [fluid] and [[pair]] that name a file, relative to the case, whose contents a checkpoint knows.
-std::vector<std::string> model_file_keys();
 
 }  // namespace odpd
