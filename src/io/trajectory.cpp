@@ -41,6 +41,15 @@ std::string author() {
   return name == nullptr || *name == '\0' ? "unknown" : name;
 }
 
+/// One after the other. A rectangular box has a matrix as well: H5MD allows a vector, which not every reader takes.
+std::vector<double> edge_vectors(const Frame& frame) {
+  if (!frame.edges.empty()) return frame.edges;
+  const auto dimension = static_cast<std::size_t>(frame.dimension);
+  std::vector<double> edges(dimension * dimension, 0.0);
+  for (std::size_t c = 0; c < dimension; ++c) edges[c * (dimension + 1)] = frame.box_size[c];
+  return edges;
+}
+
 /// A time-dependent element: its own values, and the step and time shared with the position.
 void create_element(H5Image& image, const std::string& path,
                     const std::vector<std::int64_t>& row_shape, bool integers) {
@@ -101,9 +110,7 @@ void TrajectorySegments::open_box(const Frame& frame) {
   image_->group(box);
   image_->attribute(box, "dimension", std::int64_t{frame.dimension});
   image_->attribute(box, "boundary", boundary);
-  std::vector<std::int64_t> shape{frame.dimension};
-  if (!frame.edges.empty()) shape.push_back(frame.dimension);
-  create_element(*image_, box + "/edges", shape, false);
+  create_element(*image_, box + "/edges", {frame.dimension, frame.dimension}, false);
 }
 
 void TrajectorySegments::append(const Frame& frame) {
@@ -114,8 +121,7 @@ void TrajectorySegments::append(const Frame& frame) {
   image_->append_row(group + "/position/value", frame.position);
   image_->append_row(group + "/image/value", frame.image);
   image_->append_row(group + "/velocity/value", frame.velocity);
-  image_->append_row(group + "/box/edges/value",
-                     frame.edges.empty() ? frame.box_size : frame.edges);
+  image_->append_row(group + "/box/edges/value", edge_vectors(frame));
   ++frames_;
 }
 

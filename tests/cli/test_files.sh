@@ -134,7 +134,7 @@ for name in sorted(glob.glob(f"{run}/trajectory.*.h5")):
         assert p["position/value"].shape == (frames, 64, 2), p["position/value"].shape
         assert p["velocity/value"].shape == (frames, 64, 2) and p["image/value"].shape == (frames, 64, 2)
         assert p["box"].attrs["dimension"] == 2
-        assert p["box/edges/value"].shape == (frames, 2)
+        assert (p["box/edges/value"][:] == np.diag([4.0, 4.0])).all() and p["box/edges/value"].shape == (frames, 2, 2)
         assert np.array_equal(p["id"][:], np.arange(64))
         r = p["position/value"][:]
         assert np.isfinite(r).all() and (r >= 0.0).all() and (r < 4.0).all()

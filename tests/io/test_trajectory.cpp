@@ -146,7 +146,7 @@ with h5py.File(sys.argv[1], 'r') as f:
     box = f['particles/all/box']
     assert box.attrs['dimension'] == 2 and np.shape(box.attrs['dimension']) == ()
     assert [text(b) for b in box.attrs['boundary']] == ['periodic', 'none']
-    for name, shape in [('box/edges', (3, 2)), ('position', (3, 7, 2)), ('image', (3, 7, 2)),
+    for name, shape in [('box/edges', (3, 2, 2)), ('position', (3, 7, 2)), ('image', (3, 7, 2)),
                         ('velocity', (3, 7, 2))]:
         element = f['particles/all'][name]
         assert element['value'].shape == shape, name
