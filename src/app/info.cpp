@@ -1,5 +1,6 @@
 #include "odpd/app/info.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <omp.h>
@@ -9,6 +10,7 @@
 
 #include "odpd/core/isa.h"
 #include "odpd/dynamics/integrator.h"
+#include "odpd/io/file.h"
 #include "odpd/solvers/solver.h"
 #include "odpd/version.h"
 
@@ -28,12 +30,29 @@ double memory_gibibytes() {
          static_cast<double>(sysconf(_SC_PAGE_SIZE)) / 1073741824.0;
 }
 
+std::uint64_t hash_of(const std::string& file, std::uint64_t hash) {
+  for (const char c : read_file(file))  // FNV-1a
+    hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  return hash;
+}
+
 }  // namespace
+
+const std::string& build_identity() {
+  static const std::string identity = [] {
+    const std::uint64_t hash = hash_of("/proc/self/exe", 14695981039346656037u);
+    // The library may be a file of its own.
+    Dl_info library{};
+    const bool found = ::dladdr(reinterpret_cast<const void*>(&info_text), &library) != 0;
+    return fmt::format("{:016x}", found ? hash_of(library.dli_fname, hash) : hash);
+  }();
+  return identity;
+}
 
 std::string info_text() {
   std::string out = fmt::format("odpd {}\n", ODPD_VERSION);
-  out += fmt::format("  build         {} with {}, PETSc {}\n", ODPD_BUILD_TYPE, ODPD_COMPILER,
-                     ODPD_WITH_PETSC ? "on" : "off");
+  out += fmt::format("  build         {} with {}, PETSc {}, identity {}\n", ODPD_BUILD_TYPE,
+                     ODPD_COMPILER, ODPD_WITH_PETSC ? "on" : "off", build_identity());
   out += fmt::format(
       "  instructions  kernels {} (ODPD_ISA), the rest {} without fused multiply-add\n",
       isa_name(isa()),

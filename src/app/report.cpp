@@ -150,6 +150,20 @@ std::string with_error(double value, double standard_error) {
   return fmt::format("{:.{}f} +- {:.{}f}", value, decimals, standard_error, decimals);
 }
 
+const char* cause_name(SolverError::Cause cause) {
+  switch (cause) {
+    case SolverError::Cause::blow_up:
+      return "blew up";
+    case SolverError::Cause::not_converged:
+      return "not converged";
+    case SolverError::Cause::singular:
+      return "singular";
+    case SolverError::Cause::other:
+      break;
+  }
+  return "failed";
+}
+
 template <int D>
 std::string summary_json(const Simulation<D>& simulation, const Results& results,
                          const std::vector<CheckOutcome>& checks,
@@ -175,10 +189,12 @@ std::string summary_json(const Simulation<D>& simulation, const Results& results
       .set("stopped_at_target", simulation.stopped_at_target())
       .set("threads", threads());
   if (failure)
-    json.set(failure->blew_up ? "blew_up" : "failed", JsonObject()
-                                                          .set("step", clock.step)
-                                                          .set("time", clock.time())
-                                                          .set("reason", failure->reason));
+    json.set(failure->cause == SolverError::Cause::blow_up ? "blew_up" : "failed",
+             JsonObject()
+                 .set("step", clock.step)
+                 .set("time", clock.time())
+                 .set("cause", cause_name(failure->cause))
+                 .set("reason", failure->reason));
   json.set("wall_seconds", simulation.wall_seconds());
   json.set("phase_seconds", phases_json(simulation.dynamics().phases()));
   json.set("solver", solver_json(simulation));

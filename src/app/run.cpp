@@ -58,7 +58,7 @@ template <int D>
   output.salvage();
   output.leave_last_good();
   output.write_summary(
-      summary_json(simulation, simulation.results(), {}, Failure{blew_up, error.what()}));
+      summary_json(simulation, simulation.results(), {}, Failure{error.cause(), error.what()}));
   if (!blew_up || simulation.last_good().id.empty()) throw;
   throw BlowUpError(fmt::format(
       "{}. last_good.h5 holds the state at t = {:.6g}; go on from it with: {}", error.what(),

@@ -97,7 +97,7 @@ void Simulation<D>::explain(const SolverError& error) {
                       state.particle());
   }
   const auto* blow_up = dynamic_cast<const BlowUpError*>(&error);
-  if (blow_up == nullptr) throw SolverError(what);
+  if (blow_up == nullptr) throw SolverError(what, error.cause());
   throw BlowUpError(fmt::format("{}: the run has blown up. {}", what,
                                 watch_of_state_.cure(settings_.integrator, judged(), clock_.dt,
                                                      blow_up->particle())),

@@ -45,7 +45,7 @@ class Forecast {
  public:
   void add(const StudyPoint& point, const StudyRun& run, const RunOutcome& outcome,
            const StudySettings& study) {
-    if (outcome.status == RunStatus::blew_up || !(outcome.time > 0.0)) return;
+    if (outcome.ended_with_error() || !(outcome.time > 0.0)) return;
     const double steps = outcome.time / run.dt;
     for (const std::string& key : {std::string(), method_of(point, study)}) {
       speed_[key].first += outcome.wall_seconds;
@@ -70,7 +70,11 @@ class Forecast {
 };
 
 std::string outcome_text(const RunOutcome& outcome, const StudySettings& study) {
-  if (outcome.status == RunStatus::blew_up) return "BLEW UP: " + outcome.message;
+  if (outcome.ended_with_error()) {
+    std::string failure = outcome.failure;
+    for (char& c : failure) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    return failure + ": " + outcome.message;
+  }
   if (outcome.status == RunStatus::missing) return "interrupted";
   std::string text;
   for (const StudyObservable& o : study.observables)
@@ -88,7 +92,9 @@ void require_tables(const StudySettings& study, const StudyPlan& plan, std::size
   const StudyPoint& where = plan.points[point];
   for (const StudyObservable& o : study.observables) {
     if (o.table.empty() || (where.monte_carlo && o.kind != ReferenceKind::monte_carlo)) continue;
-    if (fs::exists(directory / run.name / "run" / (o.table + ".csv"))) continue;
+    if (outcome.find(o.name) != nullptr ||
+        fs::exists(directory / run.name / "run" / (o.table + ".csv")))
+      continue;
     throw ConfigError(fmt::format(
         "{}: the point {} gives no table {}.csv for '{}': name one that it gives, or add an "
         "[[observe]] to the case",
@@ -211,6 +217,7 @@ int run_study(const StudyOptions& options) {
   const StudyExecution execution{
       .directory = out / "points", .threads = options.threads, .seconds = study.budget.seconds};
   const bool whole = run_points(execution, results);
+  tell_numbers_from_tables(results.settings, results.outcomes);
   results.findings = findings(study, results.plan, results.outcomes, execution.directory);
   write_files(out, results);
   fmt::print("{}{}: page {}, table {}\n", study.title,

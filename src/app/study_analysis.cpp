@@ -137,9 +137,13 @@ void read_runs(const std::vector<RunOutcome>& outcomes, Finding& f) {
   bool missing = false;
   for (const RunOutcome& outcome : outcomes) {
     if (outcome.status == RunStatus::missing) missing = true;
-    if (outcome.status == RunStatus::blew_up) {
-      f.verdict = Verdict::blew_up;
-      f.message = outcome.message;
+    if (outcome.ended_with_error()) {
+      // One seed that blew up tells more than another that failed.
+      if (f.verdict != Verdict::blew_up) {
+        f.verdict = outcome.status == RunStatus::blew_up ? Verdict::blew_up : Verdict::failed;
+        f.failure = outcome.failure;
+        f.message = outcome.message;
+      }
       f.blew_up_at = std::fmin(f.blew_up_at, outcome.time);
       continue;
     }
@@ -159,7 +163,7 @@ void mark_front(const StudySettings& study, const StudyPlan& plan, std::vector<F
     std::vector<std::size_t> group;
     for (std::size_t j = first; j < all.size(); ++j)
       if (same_chart(study, plan.points[all[k].point], plan.points[all[j].point]) &&
-          !all[j].is_reference && all[j].verdict != Verdict::blew_up && std::isfinite(all[j].sigma))
+          !all[j].is_reference && !all[j].ended_with_error() && std::isfinite(all[j].sigma))
         group.push_back(j);
     if (group.empty() || group.front() != k) continue;  // each group once
     std::vector<double> cost, error;
@@ -198,6 +202,8 @@ const char* verdict_name(Verdict verdict) {
       return "unclear";
     case Verdict::blew_up:
       return "blew up";
+    case Verdict::failed:
+      return "failed";
     case Verdict::missing:
       break;
   }
@@ -233,6 +239,14 @@ bool same_chart(const StudySettings& study, const StudyPoint& a, const StudyPoin
   return true;
 }
 
+void tell_numbers_from_tables(StudySettings& study,
+                              const std::vector<std::vector<RunOutcome>>& outcomes) {
+  for (StudyObservable& observable : study.observables)
+    for (const std::vector<RunOutcome>& runs : outcomes)
+      for (const RunOutcome& outcome : runs)
+        if (outcome.find(observable.name)) observable.table.clear();
+}
+
 std::vector<Finding> findings(const StudySettings& study, const StudyPlan& plan,
                               const std::vector<std::vector<RunOutcome>>& outcomes,
                               const std::filesystem::path& directory) {
@@ -248,7 +262,7 @@ std::vector<Finding> findings(const StudySettings& study, const StudyPlan& plan,
       read_runs(outcomes[p], f);
       compare(reader, study.observables[o], plan.reference[p][o], f);
       f.below_noise = std::abs(f.bias) < 2.0 * f.sigma;
-      if (f.verdict != Verdict::blew_up)
+      if (!f.ended_with_error())
         f.verdict = classify(f.bias, f.sigma, study.observables[o].tolerance);
       all.push_back(std::move(f));
     }

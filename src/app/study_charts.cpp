@@ -48,23 +48,25 @@ std::string label_at(const StudySettings& study, const StudyPoint& point, std::s
 
 using Findings = std::vector<const Finding*>;
 
-// The curve of one method, and how many of its points blew up.
+// The curve of one method, and how many of its points ended with an error.
 Curve method_curve(const StudyResults& results, const Findings& all, std::size_t method) {
   const StudySettings& study = results.settings;
   Curve curve{.title = "points", .x = {}, .y = {}, .error = {}, .line = true};
   if (study.method < study.axes.size()) curve.title = study.axes[study.method].values[method].label;
-  int blew_up = 0;
+  int blew_up = 0, failed = 0;
   for (const Finding* f : all) {
     const StudyPoint& point = results.plan.points[f->point];
     if (study.method < study.axes.size() && point.at[study.method] != method) continue;
     blew_up += f->verdict == Verdict::blew_up ? 1 : 0;
-    if (f->is_reference || f->verdict == Verdict::blew_up || !std::isfinite(f->bias)) continue;
+    failed += f->verdict == Verdict::failed ? 1 : 0;
+    if (f->is_reference || f->ended_with_error() || !std::isfinite(f->bias)) continue;
     curve.x.push_back(f->cost);
     curve.y.push_back(f->shown_error());
     curve.error.push_back(f->below_noise ? 2.0 * f->sigma - std::abs(f->bias) : f->sigma);
     curve.limit.push_back(f->below_noise);
   }
   if (blew_up > 0) curve.title += fmt::format(" ({} blew up)", blew_up);
+  if (failed > 0) curve.title += fmt::format(" ({} failed)", failed);
   return curve;
 }
 
@@ -107,8 +109,8 @@ StudyPicture accuracy_chart(const StudyResults& results, const StudyObservable& 
       study.method < study.axes.size() ? study.axes[study.method].values.size() : 1;
   for (std::size_t m = 0; m < methods; ++m) {
     chart.curves.push_back(method_curve(results, all, m));
-    if (chart.curves.back().x.empty() &&
-        chart.curves.back().title.find("blew up") == std::string::npos)
+    if (const Curve& last = chart.curves.back();
+        last.x.empty() && !last.title.ends_with("blew up)") && !last.title.ends_with("failed)"))
       chart.curves.pop_back();
   }
   return picture;
@@ -127,6 +129,7 @@ std::string cell_text(const Finding& f, double tolerance, bool relative) {
     return fmt::format("{}{:.{}f}{}", sign, std::abs(value), shown, unit);
   };
   if (f.verdict == Verdict::missing) return "";
+  if (f.verdict == Verdict::failed) return f.failure;
   if (f.verdict == Verdict::blew_up)
     return std::isfinite(f.blew_up_at) ? fmt::format("t = {:.2g}", f.blew_up_at) : "failed";
   if (f.is_reference) return "reference";
@@ -157,7 +160,7 @@ StudyPicture stability_map(const StudyResults& results, const StudyObservable& o
                 "#a8d8b9"},
                {"biased", "#fdc27a"},
                {"unclear: noise (?: unknown)", "#dddddd"},
-               {"blew up, at time t", "#e57368"}};
+               {"blew up, at time t, or failed", "#e57368"}};
   const auto ticks = [&](std::size_t axis, std::string& label, std::vector<std::string>& list) {
     if (axis == none) return list.emplace_back("");
     label = study.axes[axis].name;
@@ -180,8 +183,7 @@ StudyPicture stability_map(const StudyResults& results, const StudyObservable& o
     const StudyPoint& point = results.plan.points[f->point];
     const auto index = [&](std::size_t axis) { return axis == none ? 0 : point.at[axis]; };
     const std::size_t row = panels ? index(across) : map.y_ticks.size() - 1 - index(across);
-    const Verdict shown =
-        f->is_reference && f->verdict != Verdict::blew_up ? Verdict::ok : f->verdict;
+    const Verdict shown = f->is_reference && !f->ended_with_error() ? Verdict::ok : f->verdict;
     map.panels[panels ? index(study.method) : 0].rows[row][index(study.sweep)] = {
         shown == Verdict::missing   ? map.kinds.size()
         : shown == Verdict::ok      ? 0

@@ -23,7 +23,7 @@ figure { margin: 1rem 0; } figure svg { max-width: 100%; height: auto; border: 1
 table { border-collapse: collapse; font-size: 0.85rem; } .wide { overflow-x: auto; }
 th, td { border: 1px solid #ddd; padding: 0.2rem 0.5rem; text-align: right; white-space: nowrap; }
 th { background: #f4f4f4; } td.word { text-align: left; } td.message { text-align: left; white-space: normal; }
-.ok { background: #a8d8b9; } .biased { background: #fdc27a; } .unclear { background: #dddddd; } .blew { background: #e57368; }
+.ok { background: #a8d8b9; } .biased { background: #fdc27a; } .unclear { background: #dddddd; } .blew, .failed { background: #e57368; }
 pre { background: #f6f6f6; padding: 0.8rem; overflow-x: auto; font-size: 0.85rem; }
 )";
 
@@ -111,7 +111,7 @@ std::string row(const StudyResults& results, const Finding& f) {
   std::string text = "<tr>";
   for (std::size_t k = 0; k < study.axes.size(); ++k)
     text += "<td class=\"word\">" + escaped(study.axes[k].values[point.at[k]].label) + "</td>";
-  const std::string verdict = verdict_name(f.verdict);
+  const std::string verdict = f.verdict_text();
   std::string note = f.message;
   if (f.is_reference) note = "the reference itself";
   if (f.out_of_time)
@@ -124,9 +124,9 @@ std::string row(const StudyResults& results, const Finding& f) {
       escaped(study.observables[f.observable].name), f.seeds,
       f.seeds > 0 ? with_error(f.value.mean, f.value.standard_error) : "",
       biased ? fmt::format("{:+.2g}", f.bias) : "", biased ? fmt::format("{:.2g}", f.sigma) : "",
-      verdict.substr(0, verdict.find(' ')),
-      f.verdict == Verdict::blew_up && std::isfinite(f.blew_up_at)
-          ? fmt::format("blew up at t = {:.3g}", f.blew_up_at)
+      f.verdict == Verdict::blew_up ? "blew" : verdict_name(f.verdict),
+      f.ended_with_error() && std::isfinite(f.blew_up_at)
+          ? fmt::format("{} at t = {:.3g}", verdict, f.blew_up_at)
           : verdict,
       f.on_front ? "&#9679;" : "", std::isfinite(f.cost) ? fmt::format("{:.3g}", f.cost) : "",
       fmt::format("{:.1f}", f.wall_seconds), escaped(note));

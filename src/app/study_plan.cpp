@@ -7,6 +7,7 @@
 #include <set>
 
 #include "odpd/app/case.h"
+#include "odpd/app/info.h"
 #include "odpd/app/simulation.h"
 #include "odpd/core/error.h"
 #include "odpd/pairs/registry.h"
@@ -60,7 +61,8 @@ std::vector<std::string> overrides(const ConfigValues& keys) {
   return list;
 }
 
-// Readable, and another one for another case: results of a study that was changed and changed back are still there.
+// Readable, and another one for another case or program: results of a study that was changed and changed back are still
+// there.
 std::string directory_name(const std::string& label, const std::string& resolved) {
   std::string name;
   for (const char c : label)
@@ -69,7 +71,8 @@ std::string directory_name(const std::string& label, const std::string& resolved
                   ? c
                   : '-';
   std::uint32_t hash = 2166136261u;  // FNV-1a
-  for (const char c : resolved) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+  for (const char c : resolved + build_identity())
+    hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
   return fmt::format("{}-{:08x}", name.substr(0, 200), hash);
 }
 

@@ -16,7 +16,9 @@
 #include <system_error>
 #include <thread>
 
+#include "odpd/app/info.h"
 #include "odpd/app/interrupt.h"
+#include "odpd/app/report.h"
 #include "odpd/core/error.h"
 #include "odpd/core/timer.h"
 #include "odpd/io/file.h"
@@ -38,6 +40,8 @@ const char* word(RunStatus status) {
       return "out of time";
     case RunStatus::blew_up:
       return "blew up";
+    case RunStatus::failed:
+      return "failed";
     case RunStatus::missing:
       break;
   }
@@ -140,12 +144,31 @@ void read_summary(const fs::path& file, double share, RunOutcome& outcome) {
                                    summary.number({"observables", name, "stderr"})});
 }
 
+// What kind of error ended a run. Its summary tells, where the run came so far that it wrote one.
+void read_failure(const fs::path& summary, const std::string& message, RunOutcome& outcome) {
+  outcome.failure = cause_name(SolverError::Cause::other);
+  std::error_code ignored;
+  if (message.starts_with("not enough memory")) {
+    outcome.failure = "out of memory";
+  } else if (fs::exists(summary, ignored)) {
+    const JsonDocument json(summary);
+    for (const char* key : {"blew_up", "failed"})
+      if (const std::string cause = json.text({key, "cause"}); !cause.empty())
+        outcome.failure = cause;
+  }
+  const bool blew_up = outcome.failure == cause_name(SolverError::Cause::blow_up);
+  outcome.status = blew_up ? RunStatus::blew_up : RunStatus::failed;
+}
+
 void write_outcome(const fs::path& file, const RunOutcome& outcome, double limit) {
   JsonObject json;
   json.set("status", word(outcome.status))
+      .set("failure", outcome.failure)
       .set("message", outcome.message)
       .set("time", outcome.time);
-  json.set("seconds_limit", limit).set("processor_share", outcome.processor_share);
+  json.set("program", build_identity())
+      .set("seconds_limit", limit)
+      .set("processor_share", outcome.processor_share);
   write_file_atomically(file, json.text() + "\n");
 }
 
@@ -170,15 +193,17 @@ RunOutcome earlier_outcome(const StudyExecution& execution, const StudyRun& run)
   if (!is_same_case(directory, run) || !fs::exists(directory / "outcome.json", ignored))
     return outcome;
   const JsonDocument json(directory / "outcome.json");
-  for (const RunStatus status : {RunStatus::done, RunStatus::out_of_time, RunStatus::blew_up})
+  for (const RunStatus status :
+       {RunStatus::done, RunStatus::out_of_time, RunStatus::blew_up, RunStatus::failed})
     if (json.text({"status"}) == word(status)) outcome.status = status;
   // With more time, or no limit, it goes on.
   const bool may_go_on =
       execution.seconds == 0.0 || execution.seconds > json.number({"seconds_limit"});
   if (outcome.status == RunStatus::out_of_time && may_go_on) return {};
+  outcome.failure = json.text({"failure"});
   outcome.message = json.text({"message"});
   outcome.time = json.number({"time"});
-  if (outcome.status != RunStatus::blew_up)
+  if (!outcome.ended_with_error())
     read_summary(directory / "run" / "summary.json", json.number({"processor_share"}), outcome);
   return outcome;
 }
@@ -215,15 +240,15 @@ RunOutcome execute(const StudyExecution& execution, const StudyRun& run) {
     outcome.processor_share = ended.share;
     read_summary(directory / "run" / "summary.json", ended.share, outcome);
   } else {
-    outcome.status = RunStatus::blew_up;
+    read_failure(directory / "run" / "summary.json", message, outcome);
     outcome.message =
         !message.empty() ? message
         : code >= 0      ? fmt::format("the program ended with code {}", code)
                     : fmt::format("the program was ended by signal {}", WTERMSIG(ended.status));
     outcome.time = time_of(message, run.dt);
   }
-  // What ended in a way of its own (killed for its memory, say) gets another chance next time.
-  if (outcome.status != RunStatus::blew_up || code == 2)
+  // What ended for want of memory, or was killed, gets another chance next time.
+  if (!outcome.ended_with_error() || (code == 2 && outcome.failure != "out of memory"))
     write_outcome(directory / "outcome.json", outcome, execution.seconds);
   return outcome;
 }

@@ -33,18 +33,10 @@ std::string axis_values(const StudySettings& study, const StudyPoint& point) {
   return text;
 }
 
-const char* status_name(RunStatus status) {
-  switch (status) {
-    case RunStatus::done:
-      return "done";
-    case RunStatus::out_of_time:
-      return "out of seconds";
-    case RunStatus::blew_up:
-      return "blew up";
-    case RunStatus::missing:
-      break;
-  }
-  return "missing";
+std::string status_text(const RunOutcome& outcome) {
+  if (outcome.ended_with_error()) return outcome.failure;
+  if (outcome.status == RunStatus::missing) return "missing";
+  return outcome.status == RunStatus::done ? "done" : "out of seconds";
 }
 
 }  // namespace
@@ -60,7 +52,7 @@ std::string findings_csv(const StudyResults& results) {
     text += fmt::format(
         "{}{},{},{},{},{},{},{},{},{},{:d},{:d},{},{},{:d},{},{}\n",
         axis_values(study, results.plan.points[f.point]), study.observables[f.observable].name,
-        verdict_name(f.verdict), f.seeds, number(f.value.mean), number(f.value.standard_error),
+        f.verdict_text(), f.seeds, number(f.value.mean), number(f.value.standard_error),
         number(f.reference.mean), number(f.reference.standard_error), number(f.bias),
         number(f.sigma), f.below_noise, f.on_front, number(f.cost), number(f.wall_seconds),
         f.out_of_time, number(f.blew_up_at), field(f.message));
@@ -74,10 +66,9 @@ std::string runs_csv(const StudyResults& results) {
   for (std::size_t p = 0; p < results.plan.points.size(); ++p)
     for (std::size_t r = 0; r < results.outcomes[p].size(); ++r) {
       const RunOutcome& outcome = results.outcomes[p][r];
-      const std::string start =
-          fmt::format("{},{},{},{},{},{}", field(results.plan.points[p].label), r + 1,
-                      status_name(outcome.status), number(outcome.time),
-                      number(outcome.step_seconds), number(outcome.wall_seconds));
+      const std::string start = fmt::format(
+          "{},{},{},{},{},{}", field(results.plan.points[p].label), r + 1, status_text(outcome),
+          number(outcome.time), number(outcome.step_seconds), number(outcome.wall_seconds));
       const std::string end = fmt::format("{},{}\n", field(results.plan.points[p].runs[r].name),
                                           field(outcome.message));
       if (outcome.observables.empty()) text += start + ",,,," + end;

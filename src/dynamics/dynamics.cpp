@@ -213,7 +213,8 @@ void Dynamics<D>::note(const SolveReport& report) {
   phases_[Phase::solve] -= report.assembly_seconds;
   if (!report.converged)
     throw SolverError(
-        fmt::format("solver '{}' did not converge: {}", solver_->name(), report.failure));
+        fmt::format("solver '{}' did not converge: {}", solver_->name(), report.failure),
+        SolverError::Cause::not_converged);
   statistics_.add(report);
   if (report.note.empty()) return;
   if (++statistics_.fallbacks == 1) log_warning(fmt::format("solver: {}", report.note));

@@ -175,13 +175,17 @@ void Resistance<D>::check_rattlers(const PairNetwork<D>& network, const DofMap<D
   if (first < nodes_) {
     const auto n = static_cast<std::size_t>(first.load());
     const std::int32_t particle = dofs.particle_of(n);
-    throw SolverError(fmt::format(
-        "particle {} is a rattler: its {} neighbour(s) within the cutoff leave it free to move in "
-        "some direction "
-        "without friction, so R is singular. Cures: a weak pairwise friction of longer range "
-        "(fluid.rattler_friction = {{ gamma = 0.1, cutoff = 2.0 }}), a higher density, or a larger "
-        "cutoff",
-        particles.id[static_cast<std::size_t>(particle)], network.edges_of(particle).size()));
+    throw SolverError(
+        fmt::format(
+            "particle {} is a rattler: its {} neighbour(s) within the cutoff leave it free to move "
+            "in "
+            "some direction "
+            "without friction, so R is singular. Cures: a weak pairwise friction of longer range "
+            "(fluid.rattler_friction = {{ gamma = 0.1, cutoff = 2.0 }}), a higher density, or a "
+            "larger "
+            "cutoff",
+            particles.id[static_cast<std::size_t>(particle)], network.edges_of(particle).size()),
+        SolverError::Cause::singular);
   }
 }
 
@@ -238,7 +242,8 @@ void Resistance<D>::check_clusters(const DofMap<D>& dofs, const Particles<D>& pa
                     "singular. Cures: a weak pairwise friction of longer range "
                     "(fluid.rattler_friction = {{ gamma = 0.1, cutoff = "
                     "2.0 }}), a higher density, or a larger cutoff",
-                    particles.id[static_cast<std::size_t>(dofs.particle_of(n))]));
+                    particles.id[static_cast<std::size_t>(dofs.particle_of(n))]),
+        SolverError::Cause::singular);
   }
 }
 

@@ -70,11 +70,14 @@ std::vector<double> block_diagonal(const System& system) {
 }  // namespace
 
 void reject_block(std::int64_t node) {
-  throw SolverError(fmt::format(
-      "node {} is not held: its diagonal block is not positive definite (fewer independent "
-      "neighbours than directions, or a negative weight); give the particles mass, or add a weak "
-      "pairwise friction of longer range",
-      node));
+  throw SolverError(
+      fmt::format(
+          "node {} is not held: its diagonal block is not positive definite (fewer independent "
+          "neighbours than directions, or a negative weight); give the particles mass, or add a "
+          "weak "
+          "pairwise friction of longer range",
+          node),
+      SolverError::Cause::singular);
 }
 
 bool invert_definite(std::span<double> block, int size) {

@@ -152,6 +152,43 @@ expect_text first interrupted
 expect_exit 0 study bad --quick --out stopped
 expect_text "$out_text" '[  3/3]'
 
+# --- what ended is told by its name; another program has results of its own ---
+mkdir ends
+cat >ends/study.toml <<'STUDY'
+case = "../box"
+
+[budget]
+equilibrate = 0.05
+duration = 0.3
+
+[[axis]]
+name = "ends"
+values = [
+  { label = "well", seed = 1 },
+  { label = "unsolved", solver.max_iterations = 1 },
+  { label = "thin", fluid.density = 0.2 },
+  { label = "hot", fluid.a = 1e5 },
+]
+
+[[observable]]
+name = "divergence.rms"
+reference = { ends = "well" }
+STUDY
+cp -r box flowing
+printf '\n[[observe]]\nkind = "divergence"\nbins = [3, 3]\nevery = 1\n' >>flowing/case.toml
+sed -i 's|"../box"|"../flowing"|' ends/study.toml
+expect_exit 0 study ends --out ended
+expect_text "$out_text" 'ends=well, seed 1: divergence.rms' 'NOT CONVERGED: step' 'SINGULAR: step' 'BLEW UP: step'
+expect_text ended/study.csv 'well,divergence.rms,' 'unsolved,divergence.rms,not converged,' 'thin,divergence.rms,singular,' \
+  'hot,divergence.rms,blew up,'
+expect_exit 0 study ends --out ended
+expect_text "$out_text" '4 of 4 runs are done already'
+cp "$odpd" changed && printf x >>changed
+expect_exit 0 ./changed study ends --out ended
+expect_text "$out_text" '[  1/4]'
+expect_exit 0 study ends --out ended
+expect_text "$out_text" '4 of 4 runs are done already'
+
 # --- what is wrong is told before anything runs ---
 expect_error 1 study -- study
 expect_error 1 study nowhere -- nowhere

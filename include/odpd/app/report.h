@@ -22,11 +22,14 @@ struct CheckOutcome {
 std::vector<CheckOutcome> evaluate_checks(const std::vector<CheckSettings>& checks,
                                           const Results& results, std::int64_t alarm_crossings);
 
-/// `failure`: what ended the run, empty for none; then under "blew_up" (or "failed", for a solver) with step and time.
+/// `failure`: what ended the run, empty for none; then under "blew_up" (or "failed" with its cause, for a solver) with step
+/// and time.
 struct Failure {
-  bool blew_up = false;
+  SolverError::Cause cause = SolverError::Cause::other;
   std::string reason;
 };
+/// In words: "blew up", "not converged", "singular", "failed".
+const char* cause_name(SolverError::Cause cause);
 template <int D>
 std::string summary_json(const Simulation<D>& simulation, const Results& results,
                          const std::vector<CheckOutcome>& checks,

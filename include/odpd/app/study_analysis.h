@@ -22,7 +22,8 @@ struct Estimate {
 /// Of independent runs of the same point. NaN of none.
 Estimate averaged(const std::vector<Estimate>& runs);
 
-enum class Verdict { ok, biased, unclear, blew_up, missing };
+/// failed: ended with an error that was no blow-up.
+enum class Verdict { ok, biased, unclear, blew_up, failed, missing };
 const char* verdict_name(Verdict verdict);
 
 /// Of a relative bias with standard error sigma. Unclear: the runs are too short to tell a bias of `tolerance` from none
@@ -46,12 +47,23 @@ struct Finding {
   bool out_of_time = false;   ///< some run was stopped by the limit of seconds
   double cost = 0.0;          ///< s per time unit
   double wall_seconds = 0.0;  ///< of all its runs
-  double blew_up_at = 0.0;    ///< the earliest; NaN where none did
+  double blew_up_at = 0.0;    ///< the earliest end with an error; NaN where there was none
+  std::string failure;        ///< of the run that blew up or failed (RunOutcome)
   std::string message;
+
+  bool ended_with_error() const {
+    return verdict == Verdict::blew_up || verdict == Verdict::failed;
+  }
+  /// In words: of a failure what kind it was.
+  std::string verdict_text() const { return ended_with_error() ? failure : verdict_name(verdict); }
 
   /// What the chart shows as the error: |bias|, below the noise its upper limit 2 sigma.
   double shown_error() const;
 };
+
+/// "<name>.rms" is a number where any run gives one of that name, else of a table: then `table` stays.
+void tell_numbers_from_tables(StudySettings& study,
+                              const std::vector<std::vector<RunOutcome>>& outcomes);
 
 /// All findings, observable by observable in the order of the points, without the Monte Carlo points. `outcomes` has
 /// [point][run] of the plan; tables are read from `directory`/<run>/run. A front is drawn for each combination of the

@@ -15,13 +15,15 @@
 
 namespace odpd {
 
-enum class RunStatus { missing, done, out_of_time, blew_up };
+/// blew_up and failed: ended with an error.
+enum class RunStatus { missing, done, out_of_time, blew_up, failed };
 
 /// How a run ended and what it gave.
 struct RunOutcome {
   RunStatus status = RunStatus::missing;
-  std::string message;        ///< of a run that blew up, in the program's words
-  double time = 0.0;          ///< simulated, equilibration included; of a blow-up: when it came
+  std::string failure;        ///< "blew up", "not converged", "singular", "out of memory", "failed"
+  std::string message;        ///< of a run that ended with an error, in the program's words
+  double time = 0.0;          ///< simulated, equilibration included; of an error: when it came
   double wall_seconds = 0.0;  ///< of the whole run; not known of a blow-up
   double step_seconds =
       0.0;  ///< of the steps alone, without measuring and writing, while it had a processor
@@ -33,6 +35,9 @@ struct RunOutcome {
   std::vector<Number> observables;
 
   const Number* find(const std::string& name) const;
+  bool ended_with_error() const {
+    return status == RunStatus::blew_up || status == RunStatus::failed;
+  }
 };
 
 struct StudyExecution {

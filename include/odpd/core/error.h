@@ -27,7 +27,13 @@ class ConfigError : public Error {
 /// A linear solve failed or the physics left its range: not converged, singular, NaN (exit code 2).
 class SolverError : public Error {
  public:
-  explicit SolverError(const std::string& message) : Error(message, 2) {}
+  enum class Cause { other, not_converged, singular, blow_up };
+  explicit SolverError(const std::string& message, Cause cause = Cause::other)
+      : Error(message, 2), cause_(cause) {}
+  Cause cause() const { return cause_; }
+
+ private:
+  Cause cause_;
 };
 
 /// The particles' state has left the physics: one moves beyond half the box, a number is not finite, all are too hot.
@@ -35,7 +41,7 @@ class BlowUpError : public SolverError {
  public:
   /// particle: identity of the one that shows it, -1 for none.
   explicit BlowUpError(const std::string& message, std::int64_t particle = -1)
-      : SolverError(message), particle_(particle) {}
+      : SolverError(message, Cause::blow_up), particle_(particle) {}
   std::int64_t particle() const { return particle_; }
 
  private:
