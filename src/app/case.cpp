@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <set>
 
 #include "odpd/core/error.h"
 #include "odpd/io/csv.h"
@@ -82,88 +84,95 @@ std::vector<CheckSettings> read_checks(const Config& config) {
   return checks;
 }
 
-double parse_number(const std::string& file, std::int64_t line, const std::string& column,
-                    const std::string& text) {
-  double value = 0.0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
-    throw ConfigError(
-        fmt::format("{}:{}: column '{}': '{}' is not a finite number", file, line, column, text));
-  return value;
+// What the numbers of species in a start file count from: 0 or 1 cannot be told apart unless 0 is among them.
+template <int D>
+std::int64_t first_number(const SceneSettings<D>& scene, const std::set<std::int64_t>& numbers) {
+  if (scene.first_species) return *scene.first_species;
+  if (numbers.empty() || numbers.contains(0)) return 0;
+  if (scene.species.size() == 1 && numbers.size() == 1) return *numbers.begin();
+  throw ConfigError(fmt::format(
+      "{}: its species are numbers from {} on, none of them 0, so they may count from 1, as "
+      "LAMMPS' types do, or from 0: add start.first_species = 1 (then 1 is '{}') or = 0",
+      scene.start_file, *numbers.begin(), scene.species[0].name));
 }
 
+// A particle's species in a start file, and its line where that is text.
+struct SpeciesWord {
+  std::string word;
+  std::int64_t line = 0;
+};
+
+// By their names or, for other words, as numbers.
 template <int D>
-std::int32_t named_species(const SceneSettings<D>& scene, const std::string& name,
-                           const std::string& where) {
-  for (std::size_t k = 0; k < scene.species.size(); ++k)
-    if (scene.species[k].name == name || std::to_string(k) == name)
-      return static_cast<std::int32_t>(k);
-  throw ConfigError(fmt::format(
-      "{}: species '{}' is not one of the case's [[species]]; add it there", where, name));
+void find_species(SceneSettings<D>& scene, const std::vector<SpeciesWord>& words) {
+  const auto named = [&](const std::string& word) {
+    return std::find_if(scene.species.begin(), scene.species.end(),
+                        [&](const SpeciesSettings& s) { return s.name == word; }) -
+           scene.species.begin();
+  };
+  const auto count = static_cast<std::int64_t>(scene.species.size());
+  const auto number = [](const std::string& word) {
+    std::int64_t value = -1;
+    const auto end = std::from_chars(word.data(), word.data() + word.size(), value).ptr;
+    return end == word.data() + word.size() ? value : -1;
+  };
+  std::set<std::int64_t> numbers;
+  for (const SpeciesWord& s : words)
+    if (named(s.word) == count && number(s.word) >= 0) numbers.insert(number(s.word));
+  const std::int64_t first = first_number(scene, numbers);
+  for (const SpeciesWord& s : words) {
+    std::int64_t index = named(s.word);
+    if (index == count && number(s.word) >= 0) index = number(s.word) - first;
+    if (index < 0 || index >= count)
+      throw ConfigError(fmt::format(
+          "{}{}: species '{}' is not one of the case's [[species]]{}; add it there",
+          scene.start_file, s.line > 0 ? fmt::format(":{}", s.line) : "", s.word,
+          number(s.word) < 0 ? ""
+                             : fmt::format(" (numbered from {}, start.first_species)", first)));
+    scene.start_species.push_back(static_cast<std::int32_t>(index));
+  }
 }
 
 template <int D>
 void read_start_csv(SceneSettings<D>& scene) {
   const TextTable table = read_csv(scene.start_file);
-  const auto column = [&](const std::string& name) {
-    return static_cast<std::size_t>(std::find(table.columns.begin(), table.columns.end(), name) -
-                                    table.columns.begin());
-  };
-  const std::size_t species = column("species");
-  std::vector<std::string> names;
-  for (int c = 0; c < D; ++c) names.emplace_back(1, "xyz"[c]);
-  for (const std::string& name : names)
-    if (column(name) == table.columns.size())
-      throw ConfigError(
-          fmt::format("{}: there is no column '{}': a start file needs {} and, if wanted, species",
-                      scene.start_file, name, fmt::join(names, ", ")));
+  const std::string needs =
+      fmt::format("a start file needs {} and, if wanted, species", D > 2 ? "x, y, z" : "x, y");
+  std::array<std::size_t, D> columns{};
+  for (std::size_t c = 0; c < D; ++c) columns[c] = table.column(std::string(1, "xyz"[c]), needs);
+  const auto species = table.find("species");
+  std::vector<SpeciesWord> words;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     Vec<D> r;
-    for (int c = 0; c < D; ++c) {
-      const std::string& name = names[static_cast<std::size_t>(c)];
-      r[c] = parse_number(scene.start_file, table.line[row], name, table.rows[row][column(name)]);
-    }
+    for (std::size_t c = 0; c < D; ++c) r.x[c] = csv_number(table, row, columns[c]);
     scene.start_positions.push_back(r);
-    if (species < table.columns.size())
-      scene.start_species.push_back(
-          named_species(scene, table.rows[row][species],
-                        fmt::format("{}:{}", scene.start_file, table.line[row])));
+    if (species) words.push_back({table.rows[row][*species], table.line[row]});
   }
+  find_species(scene, words);
 }
 
 // Columns i and j (particles of the start file, from 0), and if wanted H, r_0 and r_max.
 template <int D>
 void read_bonds_csv(const Config& config, SceneSettings<D>& scene) {
-  const std::string& file = scene.bonds_file;
-  const TextTable table = parse_csv(config.table("bonds").file_text("file"), file);
-  const auto column = [&](const char* name) {
-    return static_cast<std::size_t>(std::find(table.columns.begin(), table.columns.end(), name) -
-                                    table.columns.begin());
-  };
-  for (const char* name : {"i", "j"})
-    if (column(name) == table.columns.size())
-      throw ConfigError(
-          fmt::format("{}: there is no column '{}': a file of bonds needs i and j and, if wanted, "
-                      "H, r_0, r_max",
-                      file, name));
+  const TextTable table = parse_csv(config.table("bonds").file_text("file"), scene.bonds_file);
+  const std::string needs = "a file of bonds needs i and j and, if wanted, H, r_0, r_max";
+  const std::array<std::size_t, 2> ends{table.column("i", needs), table.column("j", needs)};
   const auto particles = static_cast<double>(scene.start_positions.size());
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const auto number = [&](const char* name, double otherwise) {
-      const std::size_t at = column(name);
-      return at == table.columns.size()
-                 ? otherwise
-                 : parse_number(file, table.line[row], name, table.rows[row][at]);
+      const auto column = table.find(name);
+      return column ? csv_number(table, row, *column) : otherwise;
     };
-    const auto particle = [&](const char* name) {
-      const double x = number(name, 0.0);
+    const auto particle = [&](std::size_t column) {
+      const double x = csv_number(table, row, column);
       if (!(x >= 0.0 && x < particles && x == std::floor(x)))
         throw ConfigError(
             fmt::format("{}:{}: {} = {} is no particle of the start file, which are "
                         "counted from 0 to {}",
-                        file, table.line[row], name, x, particles - 1.0));
+                        table.file, table.line[row], table.columns[column], x, particles - 1.0));
       return static_cast<std::int64_t>(x);
     };
-    Bond bond{particle("i"), particle("j"), scene.file_bond};
+    Bond bond{particle(ends[0]), particle(ends[1]), scene.file_bond};
     bond.p.H = number("H", bond.p.H);
     bond.p.r_0 = number("r_0", bond.p.r_0);
     bond.p.r_max = number("r_max", bond.p.r_max);
@@ -209,6 +218,7 @@ void read_start_h5md(SceneSettings<D>& scene) {
   check_box(frame, scene.box, scene.start_file);
   take_offset(frame, scene.box, scene.start_file);
   const std::size_t n = frame.position.size() / D;
+  std::vector<SpeciesWord> words;
   for (std::size_t k = 0; k < n; ++k) {
     // The walls of an odpd trajectory are placed by the case itself.
     const std::int64_t group = k < frame.group.size() ? frame.group[k] : 0;
@@ -233,10 +243,10 @@ void read_start_h5md(SceneSettings<D>& scene) {
     scene.start_positions.push_back(r);
     if (k >= frame.species.size()) continue;
     const auto index = static_cast<std::size_t>(frame.species[k]);
-    const std::string name =
-        index < frame.species_names.size() ? frame.species_names[index] : std::to_string(index);
-    scene.start_species.push_back(named_species(scene, name, scene.start_file));
+    words.push_back({index < frame.species_names.size() ? frame.species_names[index]
+                                                        : std::to_string(frame.species[k])});
   }
+  find_species(scene, words);
 }
 
 }  // namespace

@@ -230,7 +230,10 @@ void read_start(const Config& config, SceneSettings<D>& scene) {
   scene.start = from == "random"    ? StartKind::random
                 : from == "lattice" ? StartKind::lattice
                                     : StartKind::file;
-  if (scene.start == StartKind::file) scene.start_file = start.file("file").string();
+  if (scene.start == StartKind::file) {
+    scene.start_file = start.file("file").string();
+    if (start.has("first_species")) scene.first_species = start.integer("first_species");
+  }
   // Molecules lie on top of a lattice.
   const bool overlaps = scene.start == StartKind::random ||
                         (scene.start == StartKind::lattice && !config.tables("molecule").empty());

@@ -67,6 +67,54 @@ TEST(Csv, ReadsWordsSpacesAndComments) {
   EXPECT_EQ(read.line, (std::vector<std::int64_t>{4, 6}));
 }
 
+TEST(Csv, TheHeaderSaysWhatSeparatesColumns) {
+  const TemporaryDirectory directory;
+  const std::vector<std::string> names{"x", "name", "y"}, row{"1.5", "salt, water", "2"};
+  for (const char* text :
+       {"x,name,y\n1.5,\"salt, water\",2\n", "x;name;y\n1.5;salt, water;2\n",
+        "x\tname\ty\n1.5\tsalt, water\t2\n", "\"x\" , \"name\",\"y\"\r\n\"1.5\",\"salt, water\", 2",
+        "\"x\";\"name\";\"y\"\n1.5;\"salt, water\";2\n"}) {
+    write_file_atomically(directory / "t.csv", std::string(text));
+    const TextTable read = read_csv(directory / "t.csv");
+    EXPECT_EQ(read.columns, names) << text;
+    ASSERT_EQ(read.rows.size(), 1u) << text;
+    EXPECT_EQ(read.rows[0], row) << text;
+  }
+  write_file_atomically(directory / "t.csv",
+                        std::string("a\tb\tc\n1\t\t\n\"say \"\"no\"\"\"\t2\t3\n"));
+  const TextTable read = read_csv(directory / "t.csv");
+  EXPECT_EQ(read.rows[0], (std::vector<std::string>{"1", "", ""}));
+  EXPECT_EQ(read.rows[1][0], "say \"no\"");
+}
+
+TEST(Csv, ColumnsAreFoundInUpperAndLowerCase) {
+  const TextTable table{"t.csv", {"X", "h", "H", "r_Max", "R_max"}, {}, {}};
+  EXPECT_EQ(table.find("x"), 0u);
+  EXPECT_EQ(table.find("H"), 2u);
+  EXPECT_EQ(table.find("h"), 1u);
+  EXPECT_EQ(table.find("r_max"), std::nullopt);  // two are as near
+  EXPECT_EQ(table.find("y"), std::nullopt);
+  EXPECT_EQ(table.column("x", ""), 0u);
+  const std::string message =
+      message_of<ConfigError>([&] { table.column("y", "a start file needs x, y"); });
+  EXPECT_EQ(message,
+            "t.csv: there is no column 'y', its header names 'X', 'h', 'H', 'r_Max', 'R_max': a "
+            "start file needs x, y");
+  const TextTable spaced{"t.csv", {"x y"}, {}, {}};
+  EXPECT_NE(message_of<ConfigError>([&] { spaced.column("x", ""); }).find("not by spaces"),
+            std::string::npos);
+}
+
+TEST(Csv, NumbersAreFiniteWithADecimalPoint) {
+  const TextTable table{"t.csv", {"x", "y"}, {{"-1e-3", "0,5"}, {"nan", "2 "}}, {3, 7}};
+  EXPECT_EQ(csv_number(table, 0, 0), -1e-3);
+  EXPECT_EQ(message_of<ConfigError>([&] { csv_number(table, 0, 1); }),
+            "t.csv:3: column 'y': '0,5' is not a finite number: write decimals with a point");
+  EXPECT_EQ(message_of<ConfigError>([&] { csv_number(table, 1, 0); }),
+            "t.csv:7: column 'x': 'nan' is not a finite number");
+  EXPECT_THROW(csv_number(table, 1, 1), ConfigError);
+}
+
 TEST(Csv, ErrorsNameFileAndLine) {
   const TemporaryDirectory directory;
   const auto failure = [&](const std::string& text) {
@@ -77,6 +125,15 @@ TEST(Csv, ErrorsNameFileAndLine) {
   EXPECT_NE(failure("x,y\n1\n").find("t.csv:2: 1 values"), std::string::npos);
   EXPECT_NE(failure("").find("t.csv: is empty"), std::string::npos);
   EXPECT_NE(failure("# only this\n\n").find("t.csv: is empty"), std::string::npos);
+  EXPECT_NE(failure("x;y\n1,2\n")
+                .find("t.csv:2: 1 values where the header names 2 columns (x, y), "
+                      "separated by semicolons"),
+            std::string::npos);
+  EXPECT_NE(failure("x,y\n1,\"2\n").find("t.csv:2: a quote"), std::string::npos);
+  EXPECT_NE(failure("x,y\n1,\"2\"0\n").find("t.csv:2: a quote"), std::string::npos);
+  // A header behind # is a comment, so the first row would pass for it.
+  EXPECT_NE(failure("# x,y\n0.5,1\n1,2\n").find("t.csv:2: numbers stand where the names"),
+            std::string::npos);
   EXPECT_NE(message_of<IoError>([&] { read_csv(directory / "absent.csv"); }).find("absent.csv"),
             std::string::npos);
   EXPECT_THROW(write_csv(directory / "t.csv", {{}, {"x", "y"}, {{1.0}}}), IoError);

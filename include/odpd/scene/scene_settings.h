@@ -80,9 +80,10 @@ struct SceneSettings {
   ForceWave force_wave;
   std::vector<ForceRegion<D>> force_regions;
   StartKind start = StartKind::random;
-  std::string start_file;                   ///< for StartKind::file, resolved
-  std::vector<Vec<D>> start_positions;      ///< contents of the start file, filled by io's caller
-  std::vector<std::int32_t> start_species;  ///< one per start position
+  std::string start_file;                     ///< for StartKind::file, resolved
+  std::optional<std::int64_t> first_species;  ///< number of the first species in it, where given
+  std::vector<Vec<D>> start_positions;        ///< contents of the start file, filled by io's caller
+  std::vector<std::int32_t> start_species;    ///< one per start position
   /// Constituents of each body in the file, in the order of the particles' bodies; empty: bodies start as the case says.
   std::vector<std::vector<Vec<D>>> start_bodies;
   std::int64_t relax_sweeps = 100;  ///< of overlap removal before the run
