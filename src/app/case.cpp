@@ -176,6 +176,15 @@ void read_bonds_csv(const Config& config, SceneSettings<D>& scene) {
     bond.p.H = number("H", bond.p.H);
     bond.p.r_0 = number("r_0", bond.p.r_0);
     bond.p.r_max = number("r_max", bond.p.r_max);
+    const auto positive = [&](const char* name, double value) {
+      if (!(value > 0.0))
+        throw ConfigError(fmt::format(
+            "{}:{}: the bond of particles {} and {} has {} = {}, which must be positive: give it "
+            "in a column {}, or for all bonds as bonds.{}",
+            table.file, table.line[row], bond.i, bond.j, name, value, name, name));
+    };
+    positive("H", bond.p.H);
+    if (bond.p.law == BondLaw::fene) positive("r_max", bond.p.r_max);
     scene.start_bonds.push_back(bond);
   }
 }

@@ -76,7 +76,7 @@ double span_of(const MoleculeSettings<D>& m, std::int64_t i, std::int64_t j) {
   return norm(m.shape[static_cast<std::size_t>(i)] - m.shape[static_cast<std::size_t>(j)]);
 }
 
-// A table of its own per bond, each with the keys of the molecule where it has none.
+// A table per bond, with the molecule's H, r_0 and r_max where it has none of its own.
 template <int D>
 void read_listed_bonds(const Config& entry, MoleculeSettings<D>& m) {
   for (const Config& bond : entry.tables("bond")) {
@@ -87,8 +87,14 @@ void read_listed_bonds(const Config& entry, MoleculeSettings<D>& m) {
       bond.fail("between",
                 fmt::format("two different beads are needed, counted from 0 to {}", m.beads() - 1));
     const auto i = static_cast<std::int64_t>(ends[0]), j = static_cast<std::int64_t>(ends[1]);
-    BondParameters p = read_bond(entry, span_of(m, i, j));
-    p.H = bond.positive("H", p.H);
+    BondParameters p = read_bond(entry, span_of(m, i, j), true);
+    const auto own_or_common = [&](const char* key, double common) {
+      if (!bond.has(key) && !entry.has(key))
+        bond.fail(key, "is missing: give it here, or in the [[molecule]] for all its bonds");
+      return bond.positive(key, common);
+    };
+    p.H = own_or_common("H", p.H);
+    if (p.law == BondLaw::fene) p.r_max = own_or_common("r_max", p.r_max);
     p.r_0 = bond.non_negative("r_0", p.r_0);
     m.bonds.push_back({i, j, p});
   }

@@ -318,6 +318,17 @@ expect_error 1 molecule exclude=some -- exclude
 expect_error 1 molecule spacing=50.0 -- 'half the box'
 expect_error 1 molecule 'bond=[{between=[0, 3]}]' -- between 'from 0 to 2'
 expect_error 1 molecule 'bond=[{between=[0, 1]}]' -- 'beads 0 and 2'
+# What every bond gives itself, the molecule need not.
+sed -i '/^H = /d' chain/case.toml
+expect_exit 0 molecule 'bond=[{between=[0, 1], H=50.0}, {between=[1, 2], H=20.0}]' --out own
+expect_exit 0 molecule 'bond=[{between=[0, 1]}, {between=[1, 2], H=20.0}]' --set molecule.0.H=50.0 --out common
+expect cmp <(sed 1,1d own/msd.csv) <(sed 1,1d common/msd.csv)
+expect_exit 0 molecule law=fene --set 'molecule.0.bond=[{between=[0, 1], H=50.0, r_max=1.0}, {between=[1, 2], H=20.0, r_max=1.0}]' --out fene
+expect_error 1 molecule 'bond=[{between=[0, 1], H=50.0}, {between=[1, 2]}]' -- molecule.0.bond.1.H missing
+expect_error 1 molecule law=fene --set 'molecule.0.bond=[{between=[0, 1], H=50.0, r_max=1.0}, {between=[1, 2], H=20.0}]' -- bond.1.r_max missing
+expect_error 1 molecule 'bond=[{between=[0, 1], H=-50.0}, {between=[1, 2], H=20.0}]' -- bond.0.H positive
+expect_error 1 molecule count=2 -- H missing
+printf 'H = 100.0\n' >>chain/case.toml
 expect_exit 0 molecule bonds=sites --out tied
 expect_error 1 molecule bonds=sites --set molecule.0.law=harmonic -- law sites
 expect_error 1 molecule bonds=sites --set molecule.0.r_0=0.1 -- r_0 sites
@@ -337,7 +348,8 @@ expect_error 1 joined -- bonds.csv "column 'j'"
 printf 'i,j\n0,3\n' >joined/bonds.csv
 expect_error 1 joined --set bonds.H=1.0 -- bonds.csv:2 'j = 3'
 printf 'i,j\n0,1\n' >joined/bonds.csv
-expect_error 1 joined -- 'particles 0 and 1' 'H = 0'
+expect_error 1 joined -- bonds.csv:2 'particles 0 and 1' 'H = 0' bonds.H
+expect_error 1 joined --set bonds.H=1.0 --set bonds.law=fene -- bonds.csv:2 'r_max = 0' bonds.r_max
 printf 'i,j\n0,1\n1,0\n' >joined/bonds.csv
 expect_error 1 joined --set bonds.H=1.0 -- 'bonded twice'
 finish
