@@ -25,6 +25,11 @@ bool repulsion_is_explicit(const IntegratorSettings& integrator) {
   return integrator_traits(integrator.name).repulsion_limits_dt;
 }
 
+bool bonds_are_explicit(const IntegratorSettings& integrator) {
+  const IntegratorTraits& traits = integrator_traits(integrator.name);
+  return traits.repulsion_limits_dt && !(traits.takes_implicit_bonds && integrator.implicit_bonds);
+}
+
 template <int D>
 struct BlowUpWatch<D>::Pairs {
   double count = 0.0, jumped = 0.0;

@@ -59,7 +59,8 @@ template <int D>
   output.leave_last_good();
   output.write_summary(
       summary_json(simulation, simulation.results(), {}, Failure{error.cause(), error.what()}));
-  if (!blew_up || simulation.last_good().id.empty()) throw;
+  const bool bond = dynamic_cast<const BondTooLongError*>(&error) != nullptr;  // no step cures it
+  if (!blew_up || bond || simulation.last_good().id.empty()) throw;
   throw BlowUpError(fmt::format(
       "{}. last_good.h5 holds the state at t = {:.6g}; go on from it with: {}", error.what(),
       simulation.last_good().time, command_to_go_on(options, simulation, output.directory())));

@@ -92,16 +92,31 @@ void Simulation<D>::explain(const SolverError& error) {
   judged_step_ = -1;  // the step may have reordered memory
   try {
     judge();
+  } catch (const BondTooLongError&) {
+    throw;
   } catch (const BlowUpError& state) {
     throw BlowUpError(fmt::format("{}. What the step met: {}", state.what(), error.what()),
                       state.particle());
   }
   const auto* blow_up = dynamic_cast<const BlowUpError*>(&error);
   if (blow_up == nullptr) throw SolverError(what, error.cause());
+  refuse_long_bond(error, what);
   throw BlowUpError(fmt::format("{}: the run has blown up. {}", what,
                                 watch_of_state_.cure(settings_.integrator, judged(), clock_.dt,
                                                      blow_up->particle())),
                     blow_up->particle());
+}
+
+// A bond that no smaller step cures says itself what does.
+template <int D>
+void Simulation<D>::refuse_long_bond(const SolverError& error, const std::string& message) const {
+  const auto* bond = dynamic_cast<const BondTooLongError*>(&error);
+  const bool large_step =
+      repulsion_is_explicit(settings_.integrator) &&
+      clock_.dt > explicit_step_limit(scene_.pair_moments(), dynamics_.constants().mass)
+                      .value_or(clock_.dt);
+  if (bond != nullptr && !large_step && !bonds_are_explicit(settings_.integrator))
+    throw BondTooLongError(message, bond->particle());
 }
 
 template <int D>
@@ -114,6 +129,8 @@ void Simulation<D>::judge() {
     dynamics_.evaluate(particles.position, clock_.time(), judged());
     why = watch_of_state_.judge(judged(), clock_.dt);
   } catch (const BlowUpError& e) {
+    refuse_long_bond(e,
+                     fmt::format("step {} (t = {:.6g}): {}", clock_.step, clock_.time(), e.what()));
     why = e.what();
     judged().network = PairNetwork<D>{};
   }

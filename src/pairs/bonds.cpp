@@ -32,16 +32,15 @@ void validate_bond(const Bond& bond) {
     refuse("r_max", p.r_max, "positive");
 }
 
-// Half the shortest periodic edge: from there on the nearest image is not the bonded one for sure.
+}  // namespace
+
 template <int D>
-double half_periodic(const Box<D>& box) {
+double longest_bond(const Box<D>& box) {
   double half = std::numeric_limits<double>::infinity();
   for (int c = 0; c < D; ++c)
     if (box.is_periodic(c)) half = std::min(half, 0.5 * box.size[c]);
   return half;
 }
-
-}  // namespace
 
 PairTerms bond_terms(const BondParameters& p, double r) {
   PairTerms t;
@@ -111,7 +110,7 @@ void BondedModel<D>::write_edges(const PairList<D>& list, const Box<D>& box,
   if (excludes_) exclude(particles, network);
   const std::int64_t pairs = network.size();
   network.resize(pairs + static_cast<std::int64_t>(bonds_.size()));
-  const double half_box = half_periodic(box);
+  const double half_box = longest_bond(box);
   for (std::size_t k = 0; k < bonds_.size(); ++k)
     write_bond(bonds_[k], half_box, box, positions, particles, static_cast<std::size_t>(pairs) + k,
                network);
@@ -144,9 +143,11 @@ void BondedModel<D>::write_bond(const Bond& bond, double half_box, const Box<D>&
   const Vec<D> d = box.separation(positions[i], positions[j]);
   const double r = norm(d);
   if (!(r < half_box))
-    throw BlowUpError(
-        fmt::format("the bond of particles {} and {} is {:.4g} long, half the box ({:.4g}) or "
-                    "more: use a smaller integrator.dt, a larger H, or a larger box",
+    throw BondTooLongError(
+        fmt::format("the bond of particles {} and {} is {:.4g} long, half the shortest periodic "
+                    "edge ({:.4g}) or more, where another image may be nearer than the bonded one: "
+                    "use a larger box, a larger H or a smaller r_0 (a smaller integrator.dt helps "
+                    "only schemes that take bonds explicitly)",
                     bond.i, bond.j, r, half_box),
         bond.i);
   PairTerms t = bond_terms(bond.p, r);
@@ -209,7 +210,7 @@ double BondedModel<D>::bonded_energy(std::size_t i, const Vec<D>& r, const Box<D
                                      const Particles<D>& particles) const {
   const auto id = static_cast<std::size_t>(particles.id[i]);
   if (id + 1 >= start_.size()) return 0.0;
-  const double half_box = half_periodic(box);
+  const double half_box = longest_bond(box);
   double energy = 0.0;
   for (std::size_t k = start_[id]; k < start_[id + 1]; ++k) {
     const Bond& bond = bonds_[bond_of_[k]];
@@ -244,6 +245,8 @@ double BondedModel<D>::frame_energy(std::int64_t id, const Vec<D>& r, const Box<
   return 0.5 * frame.H * BalancedFrame<D>(frame, places).distance_squared();
 }
 
+template double longest_bond<2>(const Box<2>&);
+template double longest_bond<3>(const Box<3>&);
 template class BondedModel<2>;
 template class BondedModel<3>;
 

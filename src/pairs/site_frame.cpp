@@ -9,6 +9,18 @@ namespace odpd {
 
 namespace {
 
+// The particles fit their sites in more than one way: they lie on a line, or inside out.
+template <int D>
+[[noreturn]] void refuse_free_turn(const SiteFrame<D>& frame, const BalancedFrame<D>& balanced) {
+  const bool mirrored = turn_under<D>(balanced.arms, balanced.arms, Vec<D>{}).has_value();
+  throw BlowUpError(
+      fmt::format("the particles {} to {}, tied to sites of one frame, lie {}, where the frame may "
+                  "turn freely: use a smaller integrator.dt or a larger H",
+                  frame.first, frame.first + static_cast<std::int64_t>(frame.sites.size()) - 1,
+                  mirrored ? "as the mirror image of their sites" : "on a line or in one point"),
+      frame.first);
+}
+
 // L_i/H of each particle.
 template <int D>
 std::vector<double> laplacians(const SiteFrame<D>& frame, const BalancedFrame<D>& balanced) {
@@ -17,13 +29,7 @@ std::vector<double> laplacians(const SiteFrame<D>& frame, const BalancedFrame<D>
     Vec<D> unit{};
     unit[c] = 1.0;
     const auto column = turn_under<D>(balanced.sites, balanced.arms, unit);
-    if (!column)
-      throw BlowUpError(
-          fmt::format("the particles {} to {}, tied to sites of one frame, lie on a line or in one "
-                      "point, where the frame may turn freely: use a smaller integrator.dt or a "
-                      "larger H",
-                      frame.first, frame.first + static_cast<std::int64_t>(frame.sites.size()) - 1),
-          frame.first);
+    if (!column) refuse_free_turn(frame, balanced);
     response[static_cast<std::size_t>(c)] = *column;
   }
   const double share = 1.0 / static_cast<double>(frame.sites.size());

@@ -1,5 +1,7 @@
 #include "odpd/particles/rigid_body.h"
 
+#include <cmath>
+
 #include "odpd/core/error.h"
 
 namespace odpd {
@@ -20,15 +22,17 @@ std::optional<Vec<D>> turn_under(std::span<const Vec<D>> arms, std::span<const V
                                  const Vec<D>& l) {
   constexpr int n = rotation_components<D>;
   std::array<Vec<D>, D> m{};  // rows of sum X^T X
-  double size = 0.0;
+  double arms_squared = 0.0, ends_squared = 0.0;
   for (std::size_t k = 0; k < arms.size(); ++k) {
-    size += dot(arms[k], ends[k]);
+    arms_squared += dot(arms[k], arms[k]);
+    ends_squared += dot(ends[k], ends[k]);
     for (int c = 0; c < n; ++c) {
       Vec<D> unit{};
       unit[c] = 1.0;
       m[static_cast<std::size_t>(c)] += torque(ends[k], swing(unit, arms[k]));
     }
   }
+  const double size = std::sqrt(arms_squared * ends_squared);
   Vec<D> w = l;
   for (std::size_t p = 0; p < static_cast<std::size_t>(n); ++p) {
     if (!(m[p].x[p] > 1e-12 * size)) return std::nullopt;

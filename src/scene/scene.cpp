@@ -6,6 +6,7 @@
 
 #include "odpd/core/error.h"
 #include "odpd/scene/fill.h"
+#include "odpd/scene/start_bonds.h"
 
 namespace odpd {
 
@@ -72,6 +73,7 @@ void Scene<D>::join_molecules() {
     bond.j += first;
     bonds_.push_back(bond);
   }
+  check_start_bonds(settings_, largest_kT(), molecules_, bonds_, particles_);
   if (!bonds_.empty())
     model_ = std::make_unique<BondedModel<D>>(std::move(model_), bonds_,
                                               frames_of(settings_.molecules, molecules_));

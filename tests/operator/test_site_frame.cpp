@@ -1,6 +1,9 @@
 // Particles tied to the sites of a frame: forces, Laplacian and stiffness against derivatives of the energy.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+
 #include "odpd/operator/edge_sums.h"
 #include "odpd/pairs/bonds.h"
 #include "odpd/particles/rigid_body.h"
@@ -156,8 +159,40 @@ TYPED_TEST(SiteFrameTest, RefusesParticlesWithoutADirection) {
   Tied<D> tied(4);
   const auto model = framed(tied.sites, 1);
   for (Vec<D>& r : tied.fluid.particles.position) r = support::uniform_vec<D>(1.0);
-  support::expect_error<odpd::BlowUpError>([&] { tied.fluid.connect(model); },
-                                           {"particles 1 to 4", "turn freely", "integrator.dt"});
+  support::expect_error<odpd::BlowUpError>(
+      [&] { tied.fluid.connect(model); },
+      {"particles 1 to 4", "on a line or in one point", "turn freely", "integrator.dt"});
+}
+
+TYPED_TEST(SiteFrameTest, TellsTheMirrorImageOfASimplexFromALine) {
+  constexpr int D = TypeParam::D;
+  // The unit vectors and a point on their diagonal, all sqrt(2) apart, scaled down.
+  std::vector<Vec<D>> sites(D + 1, support::uniform_vec<D>((1.0 - std::sqrt(D + 1.0)) / D));
+  for (std::size_t k = 0; k < D; ++k) {
+    sites[k] = Vec<D>{};
+    sites[k].x[k] = 1.0;
+  }
+  Vec<D> centre{};
+  for (const Vec<D>& b : sites) centre += (1.0 / (D + 1)) * b;
+  for (Vec<D>& b : sites) b = 0.3 * (b - centre);
+  Tied<D> tied(D + 1);
+  const auto model = framed(sites, 1);
+  for (const double other_way : {1.0, -1.0}) {
+    for (std::size_t i = 0; i < D + 2; ++i) {
+      const std::int64_t id = tied.fluid.particles.id[i];
+      if (id < 1) continue;
+      Vec<D> r = sites[static_cast<std::size_t>(id - 1)];
+      r[0] *= other_way;
+      tied.fluid.particles.position[i] = support::uniform_vec<D>(1.0) + r;
+    }
+    if (other_way > 0.0) {
+      EXPECT_LT(tied.energy(model), 1e-12);
+    } else {
+      const std::string which = "particles 1 to " + std::to_string(D + 1);
+      support::expect_error<odpd::BlowUpError>([&] { tied.fluid.connect(model); },
+                                               {which.c_str(), "the mirror image of their sites"});
+    }
+  }
 }
 
 }  // namespace

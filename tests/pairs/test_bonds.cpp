@@ -149,11 +149,11 @@ TEST(BondErrors, NameTheParticles) {
       },
       {"particles 3 and 4", "1.5 long", "integrator.dt", "r_max"});
   fluid.particles.position[4] = {{2.9, 2.9}};
-  support::expect_error<BlowUpError>(
+  support::expect_error<BondTooLongError>(
       [&] {
         fluid.connect(with_bonds({{3, 4, {.H = 1.0}}}));
       },
-      {"particles 3 and 4", "half the box"});
+      {"particles 3 and 4", "half the shortest periodic edge", "a larger box, a larger H"});
 }
 
 }  // namespace

@@ -30,6 +30,8 @@ namespace odpd {
 
 /// Whether explicit_step_limit (pairs/pair_moments.h) concerns this integrator.
 bool repulsion_is_explicit(const IntegratorSettings& integrator);
+/// Whether it takes bonds explicitly, so that a smaller step may cure one that has become too long.
+bool bonds_are_explicit(const IntegratorSettings& integrator);
 
 template <int D>
 class BlowUpWatch {

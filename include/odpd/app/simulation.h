@@ -70,6 +70,7 @@ class Simulation {
  private:
   const StepRecord<D>& named_step();
   [[noreturn]] void explain(const SolverError& error);
+  void refuse_long_bond(const SolverError& error, const std::string& message) const;
   void check_observables(const Config& config) const;
   void stop_at_target();
   /// The state that was judged last.

@@ -78,6 +78,7 @@ struct IntegratorTraits {
   bool runs_sheared = true;  ///< under [shear]
   /// Explicit in the conservative force: its stiffness limits dt.
   bool repulsion_limits_dt = true;
+  bool takes_implicit_bonds = false;  ///< may treat bonds alone implicitly (`implicit_bonds`)
   /// Explicit in the friction from this `order` on: m/friction limits dt. 0: never.
   int friction_limits_dt_from = 0;
 };

@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "odpd/core/error.h"
 #include "odpd/pairs/pair_model.h"
 #include "odpd/pairs/site_frame.h"
 
@@ -35,6 +36,16 @@ struct Bond {
   BondParameters p{};
 };
 
+/// A bond as long as half the box, where another image of its end may be nearer than the bonded one.
+class BondTooLongError : public BlowUpError {
+ public:
+  using BlowUpError::BlowUpError;
+};
+
+/// Half the shortest periodic edge, which every bond must be shorter than; infinite where there is none.
+template <int D>
+double longest_bond(const Box<D>& box);
+
 /// u, f_c and k_c of a bond of length r >= 0; u is infinite (f_c and k_c are zero) where fene does not reach. Zero for one of
 /// a frame, which only all its particles together have an energy with.
 PairTerms bond_terms(const BondParameters& p, double r);
@@ -58,8 +69,8 @@ class BondedModel : public PairModel<D> {
   PairTerms pair(double r, Site site_i, Site site_j) const override {
     return pairs_->pair(r, site_i, site_j);
   }
-  /// Pair edges, then an edge per bond in the order of `bonds`. Throws BlowUpError for a bond out of reach or as long as half
-  /// the box, and where a frame may turn freely.
+  /// Pair edges, then an edge per bond in the order of `bonds`. Throws BlowUpError for a bond out of reach, and where a
+  /// frame may turn freely, BondTooLongError for one as long as half the box.
   void write_edges(const PairList<D>& list, const Box<D>& box, std::span<const Vec<D>> positions,
                    const Particles<D>& particles, PairNetwork<D>& network) const override;
   const Densities* densities() const override { return pairs_->densities(); }

@@ -47,7 +47,8 @@ struct BalancedFrame {
 };
 
 /// Completes the edges of a frame's bonds, the network's from `edge` on, whose i, j, e and r are written: u, f_c, k_c, beyond.
-/// Throws BlowUpError for particles on a line (3D) or in one point, where the frame may turn freely.
+/// Throws BlowUpError where the frame may turn freely: for particles on a line (3D), in one point, or the mirror image of a
+/// simplex.
 template <int D>
 void write_frame(const SiteFrame<D>& frame, std::span<const Vec<D>> places, std::size_t edge,
                  PairNetwork<D>& network);
