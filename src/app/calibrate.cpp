@@ -79,7 +79,7 @@ CalibrationRecord read_record(const CalibrateOptions& options, const Config& con
   m.dimension = D;
   // The nominal density, which a count or a start file gives by its number of particles.
   m.density =
-      s.count > 0 || s.start == StartKind::file
+      s.count >= 0 || s.start == StartKind::file
           ? static_cast<double>(simulation.scene().particles().free_count()) / s.fluid_volume()
           : s.density;
   m.mass = s.mass;

@@ -47,6 +47,7 @@ std::vector<Vec<D>> grid_sites(const Vec<D>& low, const Vec<D>& high,
 // The closest to a square or cubic lattice with at least `count` sites, thinned evenly to `count`.
 template <int D>
 std::vector<Vec<D>> lattice(const Vec<D>& low, const Vec<D>& high, std::int64_t count) {
+  if (count == 0) return {};
   double spacing = std::pow(Box<D>{high - low, {}}.volume() / static_cast<double>(count), 1.0 / D);
   std::array<std::int64_t, D> n{};
   std::int64_t sites = 0;
@@ -196,23 +197,25 @@ void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<
     check_start_positions(settings);
     points = settings.start_positions;
     fluid = static_cast<std::int64_t>(points.size()) - settings.molecule_beads();
+    const bool says = settings.count >= 0 || settings.start_density > 0.0;
     const std::int64_t said =
-        settings.count > 0 ? settings.count : std::llround(settings.start_density * volume);
+        settings.count >= 0 ? settings.count : std::llround(settings.start_density * volume);
     if (fluid < 0)
       throw ConfigError(
           fmt::format("{}: the start file holds {} particles, fewer than the {} of the molecules, "
                       "which must be "
                       "its last ones",
                       settings.start_file, points.size(), settings.molecule_beads()));
-    if (said > 0 && said != fluid)
+    if (says && said != fluid)
       throw ConfigError(fmt::format(
           "{}: the start file holds {} fluid particles, but fluid.{} asks for {}: make them agree, "
           "or leave that key out",
-          settings.start_file, fluid, settings.count > 0 ? "count" : "density", said));
+          settings.start_file, fluid, settings.count >= 0 ? "count" : "density", said));
   } else {
     const std::int64_t count =
-        settings.count > 0 ? settings.count : std::llround(settings.density * volume);
-    if (count < 1) throw ConfigError("the fluid has no particles: raise fluid.density or the box");
+        settings.count >= 0 ? settings.count : std::llround(settings.density * volume);
+    if (count < 1 && settings.count < 0)
+      throw ConfigError("the fluid has no particles: raise fluid.density or the box");
     if (settings.start == StartKind::lattice && !settings.bodies.empty())
       throw ConfigError(
           "start.from = \"lattice\" would put fluid inside the bodies of the scene: use "

@@ -83,7 +83,13 @@ void read_amount(const Config& fluid, SceneSettings<D>& scene) {
     fluid.fail("count", "give density or count, never both");
   if (fluid.has("count")) {
     scene.count = fluid.integer("count");
-    if (scene.count < 1) fluid.fail("count", "must be positive");
+    if (scene.count < 0) fluid.fail("count", "must be zero or positive");
+    if (scene.count == 0 && scene.molecule_beads() == 0)
+      fluid.fail(
+          "count",
+          "is 0, so no particle moves freely: give some, or a [[molecule]] to have a melt "
+          "(a scene of bodies alone is not one: densities, energies and the watch over a run "
+          "are per free particle)");
     return;
   }
   // What the start file must hold, or how many particles to place.
@@ -116,7 +122,9 @@ void read_fluid(const Config& config, const std::optional<Calibration>& calibrat
                 SceneSettings<D>& scene) {
   const Config fluid = config.table("fluid");
   read_amount(fluid, scene);
-  const double density = scene.count > 0 ? static_cast<double>(scene.count) / scene.fluid_volume()
+  // Without a solvent the beads are the fluid.
+  const std::int64_t counted = scene.count == 0 ? scene.molecule_beads() : scene.count;
+  const double density = counted > 0 ? static_cast<double>(counted) / scene.fluid_volume()
                          : scene.start == StartKind::file ? scene.start_density
                                                           : scene.density;
   const bool amount = fluid.has("density") || fluid.has("count");

@@ -320,9 +320,12 @@ expect_error 1 molecule 'bond=[{between=[0, 3]}]' -- between 'from 0 to 2'
 expect_error 1 molecule 'bond=[{between=[0, 1]}]' -- 'beads 0 and 2'
 # What every bond gives itself, the molecule need not.
 sed -i '/^H = /d' chain/case.toml
-expect_exit 0 molecule 'bond=[{between=[0, 1], H=50.0}, {between=[1, 2], H=20.0}]' --out own
-expect_exit 0 molecule 'bond=[{between=[0, 1]}, {between=[1, 2], H=20.0}]' --set molecule.0.H=50.0 --out common
-expect cmp <(sed 1,1d own/msd.csv) <(sed 1,1d common/msd.csv)
+series=(--set 'observe=[{kind="thermo", every=1, series=true}]')
+expect_exit 0 molecule 'bond=[{between=[0, 1], H=50.0}, {between=[1, 2], H=20.0}]' "${series[@]}" --out own
+expect_exit 0 molecule 'bond=[{between=[0, 1]}, {between=[1, 2], H=20.0}]' --set molecule.0.H=50.0 "${series[@]}" --out common
+expect cmp own/thermo_series.csv common/thermo_series.csv
+expect_exit 0 molecule 'bond=[{between=[0, 1]}, {between=[1, 2], H=20.0}]' --set molecule.0.H=20.0 "${series[@]}" --out other
+expect test -n "$(cmp own/thermo_series.csv other/thermo_series.csv)"
 expect_exit 0 molecule law=fene --set 'molecule.0.bond=[{between=[0, 1], H=50.0, r_max=1.0}, {between=[1, 2], H=20.0, r_max=1.0}]' --out fene
 expect_error 1 molecule 'bond=[{between=[0, 1], H=50.0}, {between=[1, 2]}]' -- molecule.0.bond.1.H missing
 expect_error 1 molecule law=fene --set 'molecule.0.bond=[{between=[0, 1], H=50.0, r_max=1.0}, {between=[1, 2], H=20.0}]' -- bond.1.r_max missing

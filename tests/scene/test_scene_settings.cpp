@@ -32,7 +32,7 @@ TEST(SceneSettings, ReadsAChannel) {
   EXPECT_TRUE(scene.box.is_periodic(0));
   EXPECT_FALSE(scene.box.is_periodic(1));
   EXPECT_EQ(scene.density, 4.0);
-  EXPECT_EQ(scene.count, 0);
+  EXPECT_EQ(scene.count, -1);
   EXPECT_EQ(scene.start, StartKind::random);
   EXPECT_EQ(scene.relax_sweeps, 100);
   EXPECT_EQ(scene.model->species(), 1);

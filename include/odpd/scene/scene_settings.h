@@ -64,9 +64,9 @@ struct SceneSettings {
   std::vector<SpeciesSettings> species{SpeciesSettings{}};
   /// Of all pairs of species; a library user may give one of their own.
   std::shared_ptr<const PairModel<D>> model = default_pair_model<D>();
-  std::int64_t count = 0;      ///< fluid particles; 0: by density
+  std::int64_t count = -1;     ///< fluid particles; -1: by density
   double density = 4.0;        ///< fluid particles per volume between the walls
-  double start_density = 0.0;  ///< what the start file must hold, as `count` where > 0; 0: any
+  double start_density = 0.0;  ///< what the start file must hold, where there is no count; 0: any
   double mass = 0.0;           ///< of every fluid particle
   double zeta_0 = 0.0;         ///< uniform drag on every fluid particle (mass/time)
   std::vector<WallSettings<D>> walls;
