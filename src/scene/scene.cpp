@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "odpd/core/error.h"
+#include "odpd/scene/body_places.h"
 #include "odpd/scene/fill.h"
 #include "odpd/scene/start_bonds.h"
 
@@ -35,8 +36,10 @@ Scene<D>::Scene(SceneSettings<D> settings)
   particles_.walls = static_cast<std::int32_t>(settings_.walls.size());
   body_kind_ = place_bodies(settings_.bodies, settings_.box, fluid_low(), fluid_high(),
                             settings_.seed, settings_.start_bodies.empty(), particles_);
-  if (!settings_.start_bodies.empty())
+  if (!settings_.start_bodies.empty()) {
     move_bodies(settings_.start_bodies, settings_.box, settings_.start_file, particles_);
+    check_start_bodies(settings_, body_kind_, particles_);
+  }
   place_fluid(settings_, fluid_low(), fluid_high(), particles_);
   if (settings_.start != StartKind::file)
     place_molecules(settings_.molecules, settings_.box, fluid_low(), fluid_high(), settings_.seed,

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "odpd/scene/body_places.h"
 #include "odpd/scene/drive_keys.h"
 #include "odpd/scene/vector_key.h"
 
@@ -371,6 +372,7 @@ SceneSettings<D> read_scene_settings(const Config& config,
   read_drive(config, scene);
   read_shear(config, scene);
   read_drag(config.table("fluid"), scene);
+  check_body_positions(config, scene);
   return scene;
 }
 
