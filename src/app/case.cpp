@@ -9,6 +9,9 @@
 #include <cmath>
 #include <set>
 
+#include "odpd/app/calibration_file.h"
+#include "odpd/app/calibration_file.h"
+#include "odpd/app/restart.h"
 #include "odpd/core/error.h"
 #include "odpd/io/csv.h"
 #include "odpd/io/trajectory.h"
@@ -327,8 +330,15 @@ void read_start_file(SceneSettings<D>& scene) {
 }
 
 template <int D>
-void read_bonds_file(const Config& config, SceneSettings<D>& scene) {
+SceneSettings<D> read_scene(const Config& config, CheckpointReader* restart) {
+  SceneSettings<D> scene = read_scene_settings<D>(config, read_calibration(config));
+  if (restart) {
+    take_start(*restart, scene);
+  } else {
+    read_start_file(scene);
+  }
   if (!scene.bonds_file.empty()) read_bonds_csv(config, scene);
+  return scene;
 }
 
 std::string portable_case(const Config& config) {
@@ -345,9 +355,7 @@ std::string portable_case(const Config& config) {
   return Config::from_text(config.resolved(), "case.toml", absolute).resolved();
 }
 
-template void read_start_file<2>(SceneSettings<2>&);
-template void read_start_file<3>(SceneSettings<3>&);
-template void read_bonds_file<2>(const Config&, SceneSettings<2>&);
-template void read_bonds_file<3>(const Config&, SceneSettings<3>&);
+template SceneSettings<2> read_scene<2>(const Config&, CheckpointReader*);
+template SceneSettings<3> read_scene<3>(const Config&, CheckpointReader*);
 
 }  // namespace odpd

@@ -220,7 +220,9 @@ int main(int argc, char** argv) {
     return e.exit_code();
   } catch (const std::bad_alloc&) {
     std::fputs(
-        "odpd: error: not enough memory for this case; odpd run --dry-run tells what it needs\n",
+        "odpd: error: not enough memory for this case: odpd run --dry-run tells what it needs; "
+        "fewer "
+        "particles (fluid.density, fluid.count, box.size) need less\n",
         stderr);
     return 2;
   } catch (const std::system_error& e) {

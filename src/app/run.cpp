@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <new>
 #include <optional>
 
 #include "odpd/app/blow_up.h"
 #include "odpd/app/dry_run.h"
 #include "odpd/app/interrupt.h"
 #include "odpd/app/live_line.h"
+#include "odpd/app/memory.h"
 #include "odpd/app/report.h"
 #include "odpd/app/restart.h"
 #include "odpd/app/run_output.h"
@@ -137,6 +139,17 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
   return conclude(simulation, output);
 }
 
+template <int D>
+int run_or_tell_size(const RunOptions& options, const Config& config, const CaseSettings& settings,
+                     CheckpointReader* restart) {
+  try {
+    return run_in<D>(options, config, settings, restart);
+  } catch (const std::bad_alloc&) {
+    // The particles fitted, or it would have been told before; what lies between them did not.
+    throw Error(memory_text(memory_need(read_scene<D>(config, restart))), 2);
+  }
+}
+
 }  // namespace
 
 int run_case(const RunOptions& options) {
@@ -148,8 +161,8 @@ int run_case(const RunOptions& options) {
   }
   const CaseSettings settings = read_case(config, case_name(options.case_path));
   CheckpointReader* const from = checkpoint ? &*checkpoint : nullptr;
-  return settings.dimension == 2 ? run_in<2>(options, config, settings, from)
-                                 : run_in<3>(options, config, settings, from);
+  return settings.dimension == 2 ? run_or_tell_size<2>(options, config, settings, from)
+                                 : run_or_tell_size<3>(options, config, settings, from);
 }
 
 }  // namespace odpd

@@ -6,8 +6,7 @@
 #include <bit>
 #include <cmath>
 
-#include "odpd/app/calibration_file.h"
-#include "odpd/app/restart.h"
+#include "odpd/app/memory.h"
 #include "odpd/core/error.h"
 #include "odpd/core/log.h"
 
@@ -16,14 +15,9 @@ namespace odpd {
 namespace {
 
 template <int D>
-SceneSettings<D> scene_of(const Config& config, CheckpointReader* restart) {
-  SceneSettings<D> scene = read_scene_settings<D>(config, read_calibration(config));
-  if (restart) {
-    take_start(*restart, scene);
-  } else {
-    read_start_file(scene);
-  }
-  read_bonds_file(config, scene);
+SceneSettings<D> scene_that_fits(const Config& config, CheckpointReader* restart) {
+  SceneSettings<D> scene = read_scene<D>(config, restart);
+  check_memory(scene);
   return scene;
 }
 
@@ -36,7 +30,7 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings,
     : config_(config),
       settings_(std::move(settings)),
       clock_(settings_.clock),
-      scene_(scene_of<D>(config, restart)),
+      scene_(scene_that_fits<D>(config, restart)),
       dynamics_(scene_.box(), scene_.particles(), scene_.model(), scene_,
                 make_solver(settings_.solver), settings_.dynamics),
       integrator_(make_integrator<D>(settings_.integrator)),

@@ -51,6 +51,28 @@ for case in "$source_root"/cases/*/case.toml; do
   show_texts
 done
 
+# A case that does not fit into the memory there is: size and memory are told without building it, by the run as well. (With
+# sanitizers the program itself needs more than any such limit.)
+limited() { (ulimit -v "$1" && shift && "$odpd" "$@"); }
+if limited 8000000 --version >"$out_text" 2>&1; then
+  huge=(--set fluid.count=1000000000 --set 'box.size=[15811.0, 15811.0]')
+  sed '/^density/d' box/case.toml >box/counted.toml
+  for how in --dry-run ''; do
+    expect_error 2 limited 8000000 run box/counted.toml $how "${huge[@]}" -- 'not enough memory' '1e+09 particles' edges TiB \
+      '7.63 GiB (ulimit -v)' 'lower fluid.count'
+  done
+  expect_error 2 limited 8000000 run box --dry-run --set 'box.size=[15811.0, 15811.0]' -- 'lower fluid.density or box.size'
+  expect_error 2 limited 8000000 run channel --dry-run --set 'wall.0.layers=[{depth=0.0, spacing=1e-9}]' -- wall.layers
+  expect_error 2 limited 8000000 run box --dry-run --set fluid.density=1e30 -- 'not enough memory' EiB fluid.density
+  # The particles fit, what lies between them does not.
+  expect_error 2 limited 400000 run box --dry-run --set 'box.size=[500.0, 500.0]' --set start.relax_sweeps=0 -- \
+    'not enough memory' '1e+06 particles' GiB 'fluid.density'
+  expect test ! -e runs
+else
+  skip 'too little memory: this build does not start under a limit'
+fi
+before=$(listing)
+
 # Errors come as they would in the run, and --out and --threads change nothing.
 expect_error 1 "$odpd" run box --dry-run --set fluid.b=1.0 -- '--set fluid.b'
 expect_error 2 "$odpd" run box --dry-run --set solver.max_iterations=1 -- solver.max_iterations

@@ -60,12 +60,10 @@ Config open_case(const std::filesystem::path& path, const std::vector<std::strin
 std::string case_name(const std::filesystem::path& path);
 /// Reads title, dimension, [integrator], [solver], [neighbours], [run], [output] and [[check]].
 CaseSettings read_case(const Config& config, const std::string& name);
-/// Fills start_positions, start_species and start_bodies from the start file (CSV or H5MD), where the scene has one.
+/// All that the case says of its scene, with the contents of its files (start, bonds, calibration): of a `restart` from the
+/// checkpoint, whose file texts `config` has (`take_file_texts`).
 template <int D>
-void read_start_file(SceneSettings<D>& scene);
-/// Fills start_bonds from the file of [bonds], where the scene has one, once it has the start positions.
-template <int D>
-void read_bonds_file(const Config& config, SceneSettings<D>& scene);
+SceneSettings<D> read_scene(const Config& config, CheckpointReader* restart = nullptr);
 
 /// The resolved case as TOML, the files it names absolute: it runs from whatever directory it is put in.
 std::string portable_case(const Config& config);
