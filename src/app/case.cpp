@@ -10,7 +10,6 @@
 #include <set>
 
 #include "odpd/app/calibration_file.h"
-#include "odpd/app/calibration_file.h"
 #include "odpd/app/restart.h"
 #include "odpd/core/error.h"
 #include "odpd/io/csv.h"

@@ -11,6 +11,7 @@
 #include "odpd/dynamics/clock.h"
 #include "odpd/dynamics/dynamics.h"
 #include "odpd/dynamics/integrator.h"
+#include "odpd/io/checkpoint_file.h"
 #include "odpd/scene/scene_settings.h"
 #include "odpd/solvers/solver.h"
 
