@@ -312,6 +312,8 @@ CaseSettings read_case(const Config& config, const std::string& name) {
   return c;
 }
 
+namespace {
+
 template <int D>
 void read_start_file(SceneSettings<D>& scene) {
   if (scene.start != StartKind::file) return;
@@ -327,6 +329,8 @@ void read_start_file(SceneSettings<D>& scene) {
   if (scene.start_positions.empty())
     throw ConfigError(fmt::format("{}: there are no fluid particles in it", scene.start_file));
 }
+
+}  // namespace
 
 template <int D>
 SceneSettings<D> read_scene(const Config& config, CheckpointReader* restart) {

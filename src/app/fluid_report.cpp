@@ -42,7 +42,8 @@ std::vector<double> fractions(const Scene<D>& scene) {
   std::vector<double> fraction(scene.settings().species.size(), 0.0);
   for (std::size_t i = 0; i < particles.position.size(); ++i)
     if (particles.is_free(i)) fraction[static_cast<std::size_t>(particles.species[i])] += 1.0;
-  for (double& f : fraction) f /= static_cast<double>(particles.free_count());
+  for (double& f : fraction)
+    f /= static_cast<double>(std::max<std::int64_t>(1, particles.free_count()));
   return fraction;
 }
 
@@ -187,7 +188,7 @@ std::string fluid_text(const Scene<D>& scene, const Results& results) {
   const KineticTheory k = kinetic_theory_of(scene);
   std::string out = "Fluid\n" + line("state", state_values(scene));
   const ModelParameters parameters = model.parameters();
-  out += line(parameters.heading.c_str(), parameters.values);
+  if (!parameters.values.empty()) out += line(parameters.heading.c_str(), parameters.values);
   const DpdFluid* dpd = dpd_fluid(model);
   if (dpd != nullptr && dpd->asked.any()) out += line("asked for", asked_values(dpd->asked));
   if (dpd != nullptr && dpd->calibration) {

@@ -92,7 +92,7 @@ MemoryNeed memory_need(const SceneSettings<D>& scene) {
   need.keys = std::max_element(shares.begin(), shares.end(), [](const Share& a, const Share& b) {
                 return a.particles < b.particles;
               })->keys;
-  const double r_c = DpdModel<D>(static_cast<int>(scene.species.size()), scene.pairs).cutoff();
+  const double r_c = scene.model->cutoff();
   need.edges = 0.5 * need.particles * need.particles / volume * unit_ball[d] * std::pow(r_c, D);
   // Position and velocity, image, identity, species and group.
   need.least = need.particles * (2.0 * sizeof(Vec<D>) + D * sizeof(std::int32_t) + 16.0);

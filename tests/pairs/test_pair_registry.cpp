@@ -15,27 +15,28 @@ using support::expect_error;
 
 FluidKeys keys_of(const std::string& text, std::size_t species = 1) {
   const Config config = Config::from_text(text, "case.toml");
-  FluidKeys keys{.fluid = config.table("fluid"), .pairs = {}, .species = species};
+  FluidKeys keys{
+      .fluid = config.table("fluid"), .pairs = {}, .species = species, .calibration = {}};
   keys.density = 4.0;
   return keys;
 }
 
-const std::string standard = "[fluid]\nkT = 1.0\na = 18.5\ngamma = 4.5\n";
+const std::string standard_fluid = "[fluid]\nkT = 1.0\na = 18.5\ngamma = 4.5\n";
 
 TEST(PairRegistry, TheFirstNameIsTheDefault) {
   ASSERT_FALSE(odpd::pair_model_names().empty());
   EXPECT_EQ(odpd::pair_model_names().front(), "dpd");
-  EXPECT_EQ(odpd::read_pair_model<2>(keys_of(standard))->name(), "dpd");
-  EXPECT_EQ(odpd::read_pair_model<3>(keys_of(standard + "model = \"dpd\"\n"))->cutoff(), 1.0);
+  EXPECT_EQ(odpd::read_pair_model<2>(keys_of(standard_fluid))->name(), "dpd");
+  EXPECT_EQ(odpd::read_pair_model<3>(keys_of(standard_fluid + "model = \"dpd\"\n"))->cutoff(), 1.0);
   expect_error<ConfigError>(
-      [] { odpd::read_pair_model<2>(keys_of(standard + "model = \"dpb\"\n")); },
+      [] { odpd::read_pair_model<2>(keys_of(standard_fluid + "model = \"dpb\"\n")); },
       {"fluid.model", "dpd"});
 }
 
 TEST(PairRegistry, PairsOfSpeciesOverride) {
   const Config config = Config::from_text(
-      standard + "[[pair]]\na = 60.0\ns = 2.0\n[[pair]]\nsigma = 2.0\n", "case.toml");
-  FluidKeys keys{.fluid = config.table("fluid"), .pairs = {}, .species = 3};
+      standard_fluid + "[[pair]]\na = 60.0\ns = 2.0\n[[pair]]\nsigma = 2.0\n", "case.toml");
+  FluidKeys keys{.fluid = config.table("fluid"), .pairs = {}, .species = 3, .calibration = {}};
   const auto entries = config.tables("pair");
   keys.pairs = {{entries[0], 0, 2}, {entries[1], 1, 1}};
   const auto model = odpd::read_pair_model<2>(keys);
@@ -52,16 +53,18 @@ TEST(PairRegistry, PairsOfSpeciesOverride) {
 
 TEST(PairRegistry, PhysicalInputsAreOfDpd) {
   for (const char* key : {"eta", "Sc", "alpha", "kappa_inverse"}) {
-    const Config config = Config::from_text(standard + std::string(key) + " = 3.0\n", "case.toml");
+    const Config config =
+        Config::from_text(standard_fluid + std::string(key) + " = 3.0\n", "case.toml");
     expect_error<ConfigError>(
         [&] { odpd::refuse_physical_inputs(config.table("fluid"), "springs"); },
         {key, "fluid.model = \"dpd\"", "\"springs\""});
   }
-  const Config config = Config::from_text(standard + "calibration = \"c.json\"\n", "case.toml");
+  const Config config =
+      Config::from_text(standard_fluid + "calibration = \"c.json\"\n", "case.toml");
   expect_error<ConfigError>([&] { odpd::refuse_physical_inputs(config.table("fluid"), "springs"); },
                             {"fluid.calibration"});
   EXPECT_NO_THROW(odpd::refuse_physical_inputs(
-      Config::from_text(standard, "case.toml").table("fluid"), "springs"));
+      Config::from_text(standard_fluid, "case.toml").table("fluid"), "springs"));
 }
 
 }  // namespace

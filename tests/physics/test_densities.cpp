@@ -20,9 +20,9 @@ BlockAverage toy_averages(const std::string& scheme, double dt, std::int64_t ste
   constexpr std::size_t count = 100;
   Crowd<2> crowd(count, edge, true);
   const ToyModel<2> model(toy);
-  const NoSurroundings<2> nothing;
+  const NoSurroundings<2> nothing({.kT = toy.kT});
   Dynamics<2> dynamics(crowd.box, crowd.particles, model, nothing,
-                       make_solver({.name = "pcg", .tolerance = 1e-6}), {.kT = toy.kT});
+                       make_solver({.name = "pcg", .tolerance = 1e-6}), {});
   const auto integrator = make_integrator<2>(scheme);
   BlockAverage average(4);
   Clock clock{.dt = dt, .equilibration_steps = steps / 20, .total_steps = steps};

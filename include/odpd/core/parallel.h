@@ -18,7 +18,7 @@ int threads();
 /// body(i) for 0 <= i < n, each i once, in any order: bodies must write to places of their own. On one thread below
 /// `fewest`, where starting the others costs more.
 template <class Body>
-void parallel_for(std::int64_t n, const Body& body, std::int64_t fewest = 513) {
+void parallel_for(std::int64_t n, const Body& body, [[maybe_unused]] std::int64_t fewest = 513) {
 #ifdef _OPENMP
   if (threads() > 1 && n >= fewest) {
 #pragma omp parallel for schedule(static)
