@@ -81,8 +81,8 @@ template <int D>
 void set_integrals(const PairFunction<D>& pair, PairMoments& m) {
   if (pair.ends().empty()) return;
   const double first = pair.ends().front();
-  const Integrand near = integrand(pair, std::ldexp(first, -30)),
-                  further = integrand(pair, std::ldexp(first, -20));
+  const Integrand near = integrand(pair, std::ldexp(first, -60)),
+                  further = integrand(pair, std::ldexp(first, -50));
   const Integrand all = integrals(pair, 0.0);
   const auto defined = [&](std::size_t k) -> std::optional<double> {
     if (diverges(near[k], further[k]) || !std::isfinite(all[k])) return std::nullopt;

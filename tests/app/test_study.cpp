@@ -194,6 +194,7 @@ TEST_F(StudyFile, FindsBiasCostFrontAndBlowUps) {
   RunOutcome broken;
   broken.status = RunStatus::blew_up;
   broken.time = 0.7;
+  broken.failure = "blew up";
   broken.message = "step 7: over";
   results.outcomes = {{gave(30.0, 0.06, 8.0), gave(30.03, 0.06, 8.0)},  // T: 0.01, 0.02, 0.05
                       {gave(30.1, 0.01, 4.0), gave(30.1, 0.01, 4.0)},

@@ -2,6 +2,7 @@
 // Systems whose unknowns per node are not the dimension of space, on the edges of a real pair network: a fluid of particles that
 // spin, and conduction between particles. A = sum over edges of J^T Z J, with slip J (x_i, x_j) = J_i x_i + J_j x_j.
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -65,12 +66,12 @@ class EdgeSystem : public odpd::System {
     return {block_size(), nodes(), asked_.translated};
   }
   void apply(std::span<const double> x, std::span<double> y) const override {
-    odpd::AssembledSystem(matrix_).apply(x, y);
+    assembled_->apply(x, y);
   }
   void block_diagonal(std::span<double> blocks) const override {
-    odpd::AssembledSystem(matrix_).block_diagonal(blocks);
+    assembled_->block_diagonal(blocks);
   }
-  const odpd::BlockCsr& matrix() const override { return matrix_; }
+  const odpd::BlockCsr& matrix() const override { return assembled_->matrix(); }
   std::span<const double> positions() const override { return {}; }
   int space_dimension() const override { return dimension_; }
   int periodic_directions() const override { return dimension_; }
@@ -85,15 +86,17 @@ class EdgeSystem : public odpd::System {
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += block.value[k];
   }
   void assemble() {
-    matrix_.block = block_size();
-    matrix_.rows = static_cast<std::int32_t>(nodes());
-    matrix_.start.assign(static_cast<std::size_t>(nodes()) + 1, 0);
+    odpd::BlockCsr matrix;
+    matrix.block = block_size();
+    matrix.rows = static_cast<std::int32_t>(nodes());
+    matrix.start.assign(static_cast<std::size_t>(nodes()) + 1, 0);
     for (const auto& [place, block] : blocks_) {
-      ++matrix_.start[static_cast<std::size_t>(place.first) + 1];
-      matrix_.column.push_back(place.second);
-      matrix_.value.insert(matrix_.value.end(), block.begin(), block.end());
+      ++matrix.start[static_cast<std::size_t>(place.first) + 1];
+      matrix.column.push_back(place.second);
+      matrix.value.insert(matrix.value.end(), block.begin(), block.end());
     }
-    for (std::size_t n = 1; n < matrix_.start.size(); ++n) matrix_.start[n] += matrix_.start[n - 1];
+    for (std::size_t n = 1; n < matrix.start.size(); ++n) matrix.start[n] += matrix.start[n - 1];
+    assembled_ = std::make_unique<odpd::AssembledSystem>(std::move(matrix));
   }
 
   odpd::NodeMap map_;
@@ -101,7 +104,7 @@ class EdgeSystem : public odpd::System {
   Asked asked_;
   bool anchored_ = false;
   std::map<std::pair<std::int32_t, std::int32_t>, std::vector<double>> blocks_;
-  odpd::BlockCsr matrix_;
+  std::unique_ptr<odpd::AssembledSystem> assembled_;
 };
 
 /// Friction along and across each edge on the slip of two spheres at their point of contact,

@@ -28,6 +28,16 @@ struct Toy {
   int dimension = 0, translated = 0;
   std::vector<double> load;
 
+  void remove_torque() {
+    const auto block = static_cast<std::size_t>(map.block_size()),
+               spins = block - static_cast<std::size_t>(translated);
+    std::vector<double> mean(spins, 0.0);
+    const double n = static_cast<double>(map.nodes());
+    for (std::size_t k = 0; k < load.size(); ++k)
+      if (k % block < spins) mean[k % block] += load[k] / n;
+    for (std::size_t k = 0; k < load.size(); ++k)
+      if (k % block < spins) load[k] -= mean[k % block];
+  }
   Matrix translations() const {
     const auto n = static_cast<std::size_t>(map.unknowns());
     const auto block = static_cast<std::size_t>(map.block_size()),
@@ -63,6 +73,7 @@ Toy make(Field field, Problem problem) {
 class Unknowns : public ::testing::TestWithParam<std::tuple<std::string, Field, Problem, int>> {
  protected:
   std::string solver() const { return std::get<0>(GetParam()).substr(0, solver_end()); }
+  Field field() const { return std::get<1>(GetParam()); }
   Problem problem() const { return std::get<2>(GetParam()); }
   Toy toy() const {
     const Field field = std::get<1>(GetParam());
@@ -120,13 +131,16 @@ std::vector<double> sums(const Matrix& E, const std::vector<double>& x) {
 TEST_P(Unknowns, EverySolverFindsTheDenseSolution) {
   if (solver() == "picard-deflated" && problem() == Problem::regular)
     GTEST_SKIP() << "solves projected problems only";
-  const Toy toy = this->toy();
+  Toy toy = this->toy();
   const EdgeSystem system(toy.edges, toy.map, toy.dimension,
                           {problem() == Problem::held, toy.translated});
   const bool projected = problem() != Problem::regular;
   ASSERT_EQ(system.translations_are_null(), problem() == Problem::null_space);
   ASSERT_EQ(system.projected(), projected);
   ASSERT_NE(system.block_size(), toy.dimension);
+  // Spins that are all alike are an eigenvector of D^-1 A with eigenvalue 2, where block-Jacobi only changes sign for ever, unless
+  // known particles stop them: it needs a load that does not drive them.
+  if (solver().starts_with("picard") && field() == Field::spin) toy.remove_torque();
   const Matrix E = projected ? toy.translations() : Matrix{toy.load.size(), 0};
   const auto exact = contract::dense_solution(toy.edges, toy.map, E, toy.load);
   const auto engine = odpd::make_solver(options());
