@@ -58,8 +58,9 @@ signalled() {
 hits=0
 for delay in 0.0 0.03 0.09 0.17; do
   signalled KILL "$delay" "killed$delay" 2>/dev/null
-  # A fast machine may be through before.
+  # A fast machine may be through before, or have nothing left to do but to end.
   [ "$code" -eq 0 ] && continue
+  grep -qs '"finished": true' "killed$delay/summary.json" && continue
   expect test "$code" -eq 137 -a ! -e "killed$delay/summary.json"
   hits=$((hits + 1))
   expect_exit 0 run channel --restart "killed$delay/checkpoint.h5"
