@@ -16,7 +16,7 @@ namespace odpd {
 
 namespace {
 
-constexpr std::array<double, 2> bytes_per_particle{300.0, 450.0}, bytes_per_edge{150.0, 170.0};
+constexpr std::array<double, 2> bytes_per_particle{1350.0, 2400.0}, bytes_per_edge{190.0, 205.0};
 constexpr std::array<double, 2> unit_ball{std::numbers::pi, 4.0 * std::numbers::pi / 3.0};
 
 // As place_walls makes them.

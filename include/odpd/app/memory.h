@@ -2,10 +2,9 @@
 // The memory that a case needs, known before anything of its size is built:
 //
 //   particles N from counts, densities and layers;  edges E = N/2 (N/V) S_d r_c^d, S_d the volume of the unit ball
-//   bytes = 300 N + 150 E (2D),  450 N + 170 E (3D)
+//   bytes = 1350 N + 190 E (2D),  2400 N + 205 E (3D)
 //
-// The coefficients are those of the resident memory of dry runs at 2e5 and 1e6 particles with pcg and a trapezoidal step
-// (docs/performance.md).
+// The coefficients are those of the largest resident memory of runs with pcg and trapezoidal (docs/performance.md).
 #include "odpd/scene/scene_settings.h"
 
 namespace odpd {

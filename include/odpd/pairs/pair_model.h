@@ -43,7 +43,7 @@ class PairModel {
                            PairNetwork<D>& network) const = 0;
   /// What the energy has beyond pairs, as long as the model lives; null in models of pairs.
   virtual const Densities* densities() const { return nullptr; }
-  /// Some pair has a conservative force (a > 0); otherwise energy and pressure are those of an ideal gas.
+  /// Some pair has a conservative force; otherwise energy and pressure are those of an ideal gas.
   virtual bool conservative() const = 0;
   /// Some pair has kT > 0.
   virtual bool thermal() const = 0;
