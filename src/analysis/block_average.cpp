@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
@@ -96,8 +97,7 @@ std::vector<double> BlockAverage::column_means(std::int64_t without_block) const
   for (std::size_t k = 0; k < n; ++k) {
     if (static_cast<std::int64_t>(k) == without_block) continue;
     for (std::size_t c = 0; c < width_; ++c)
-      means[c] += blocks_[k * width_ + c] /
-                  static_cast<double>((n - 1) * static_cast<std::size_t>(block_length_));
+      means[c] += blocks_[k * width_ + c] / static_cast<double>((n - 1) * index(block_length_));
   }
   return means;
 }

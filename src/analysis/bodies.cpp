@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "odpd/analysis/observer_keys.h"
+#include "odpd/core/index.h"
 #include "odpd/operator/edge_sums.h"
 
 namespace odpd {
@@ -183,11 +184,11 @@ void Bodies<D>::count_fluid(const Particles<D>& particles, const Stage<D>& stage
 template <int D>
 void Bodies<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
   std::vector<double> sample(this->average().width(), 0.0);
-  const std::vector<std::int32_t> index = particles.index_of_id();
+  const std::vector<std::int32_t> index_of = particles.index_of_id();
   members_.assign(kind_.size(), {});
   for (std::size_t b = 0; b < kind_.size(); ++b)
     for (const std::int64_t id : particles.bodies[b].members)
-      members_[b].push_back(static_cast<std::size_t>(index[static_cast<std::size_t>(id)]));
+      members_[b].push_back(index(index_of[index(id)]));
   std::vector<Vec<D>> noise(record.start.position.size());
   if (!record.edge_noise.empty())
     add_edge_forces<D>(record.start.network, record.edge_noise, noise);

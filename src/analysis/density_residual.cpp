@@ -7,12 +7,13 @@
 #include <numeric>
 
 #include "odpd/analysis/observer_keys.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
 namespace {
 
-constexpr auto no_column = static_cast<std::size_t>(-1);
+constexpr auto no_column = index(-1);
 
 // The column of each cell of the grid; none for cells whose centre is nearer than `clear` to that of a body.
 template <int D>
@@ -44,8 +45,8 @@ template <int D>
 DensityResidual<D>::DensityResidual(ObserverSettings settings, Grid<D> grid,
                                     std::vector<std::size_t> column)
     : Observer<D>(std::move(settings),
-                  static_cast<std::size_t>(std::count_if(
-                      column.begin(), column.end(), [](std::size_t c) { return c != no_column; }))),
+                  index(std::count_if(column.begin(), column.end(),
+                                      [](std::size_t c) { return c != no_column; }))),
       grid_(std::move(grid)),
       column_(std::move(column)) {}
 

@@ -7,6 +7,7 @@
 
 #include "odpd/analysis/least_squares.h"
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
@@ -17,7 +18,7 @@ Displacements::Displacements(std::string owner, double window, double fit_from, 
       lag_time_(lag_time),
       lags_(std::max<std::int64_t>(1, std::llround(window / lag_time))),
       kinds_(kinds),
-      window_(static_cast<std::size_t>(lags_) * kinds, 0.0),
+      window_(index(lags_) * kinds, 0.0),
       curve_(window_.size()),
       diffusion_(kinds + 1) {}
 
@@ -29,16 +30,15 @@ bool Displacements::add(std::vector<double> now, std::span<const std::int32_t> k
     std::vector<double> sum(kinds_, 0.0), population(kinds_, 0.0);
     for (std::size_t n = 0; n < kind.size(); ++n) {
       if (kind[n] < 0) continue;
-      population[static_cast<std::size_t>(kind[n])] += 1.0;
+      population[index(kind[n])] += 1.0;
       for (const int c : components) {
-        const std::size_t at = n * width + static_cast<std::size_t>(c);
+        const std::size_t at = n * width + index(c);
         const double path = now[at] - origin_[at];
-        sum[static_cast<std::size_t>(kind[n])] += path * path;
+        sum[index(kind[n])] += path * path;
       }
     }
     for (std::size_t a = 0; a < kinds_; ++a)
-      window_[static_cast<std::size_t>(lag_) * kinds_ + a] =
-          population[a] > 0.0 ? sum[a] / population[a] : 0.0;
+      window_[index(lag_) * kinds_ + a] = population[a] > 0.0 ? sum[a] / population[a] : 0.0;
     if (++lag_ < lags_) return false;
     finish_window(population, components.size());
     complete = true;
@@ -57,7 +57,7 @@ void Displacements::finish_window(std::span<const double> population, std::size_
     for (std::int64_t k = 0; k < lags_; ++k) {
       if (lag(k) < fit_from_ && k + 2 < lags_) continue;
       t.push_back(lag(k));
-      y.push_back(window_[static_cast<std::size_t>(k) * kinds_ + a]);
+      y.push_back(window_[index(k) * kinds_ + a]);
     }
     const std::vector<double> even(t.size(), 1.0);
     const double slope = t.size() > 1 ? fit_polynomial(1, t, y, even).coefficient[1] : y[0] / t[0];
@@ -85,7 +85,7 @@ void Displacements::load(const StateReader& in, const std::string& prefix,
   window_ = in.read_doubles(prefix + "window");
   if (lag.size() != 1 || lag[0] < 0 || lag[0] >= lags_ ||
       !(origin_.size() == coordinates || origin_.empty()) ||
-      window_.size() != static_cast<std::size_t>(lags_) * kinds_)
+      window_.size() != index(lags_) * kinds_)
     throw IoError(
         fmt::format("the checkpoint's displacements '{}' do not fit the case's particles and "
                     "window: it is damaged or of another case",

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "odpd/analysis/observer_keys.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
@@ -58,10 +59,9 @@ void Divergence<D>::add_derivative(std::size_t cell, int a, int b, Terms& terms)
     width = grid_.spacing(a);
   }
   const auto neighbour = [&](std::int64_t place) {
-    return static_cast<std::size_t>(static_cast<std::int64_t>(cell) +
-                                    (place - at) * grid_.stride(a));
+    return index(static_cast<std::int64_t>(cell) + (place - at) * grid_.stride(a));
   };
-  const auto k = static_cast<std::size_t>(b) + 1;
+  const auto k = index(b) + 1;
   terms.push_back({1.0 / width, column(neighbour(above), k), column(neighbour(above), 0)});
   terms.push_back({-1.0 / width, column(neighbour(below), k), column(neighbour(below), 0)});
 }

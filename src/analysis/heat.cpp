@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
 
@@ -17,13 +18,13 @@ double body_power(const Scene<D>& scene, const Particles<D>& particles, const St
                   const Stage<D>& stage, std::vector<Vec<D>>& velocity) {
   if (particles.bodies.empty()) return 0.0;
   double power = 0.0;
-  const std::vector<std::int32_t> index = particles.index_of_id();
+  const std::vector<std::int32_t> index_of = particles.index_of_id();
   for (std::size_t b = 0; b < particles.bodies.size(); ++b) {
     if (particles.bodies[b].known) continue;
     std::vector<std::size_t> at;
     std::vector<Vec<D>> arms, of_body;
     for (const std::int64_t id : particles.bodies[b].members) {
-      at.push_back(static_cast<std::size_t>(index[static_cast<std::size_t>(id)]));
+      at.push_back(index(index_of[index(id)]));
       arms.push_back(stage.arms[at.back()]);
       of_body.push_back(stage.velocity[at.back()]);
     }
@@ -55,7 +56,7 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
   const PairNetwork<D>& network = stage.network;
   std::vector<double> friction(network.i.size()), noise(record.edge_noise.size());
   parallel_for(network.size(), [&](std::int64_t edge) {
-    const auto k = static_cast<std::size_t>(edge);
+    const auto k = index(edge);
     const Vec<D> slip = network.slip(k, stage.velocity);
     friction[k] = -dot(friction_of(network, k, slip), slip);
   });

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
@@ -39,7 +40,7 @@ std::vector<std::vector<double>> inverse(std::vector<std::vector<double>> a) {
 
 PolynomialFit fit_polynomial(int degree, std::span<const double> x, std::span<const double> y,
                              std::span<const double> error) {
-  const auto terms = static_cast<std::size_t>(degree) + 1;
+  const auto terms = index(degree) + 1;
   if (x.size() < terms)
     throw ConfigError(fmt::format(
         "a fit of degree {} needs at least {} bins, {} lie in its range: widen fit_from/fit_to "

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/core/index.h"
+
 namespace odpd {
 
 namespace {
@@ -19,7 +21,7 @@ std::vector<std::array<std::size_t, 2>> bond_tree(const MoleculeSettings<D>& m) 
   while (tree.size() + 1 < m.shape.size()) {
     const std::size_t before = tree.size();
     for (const auto& bond : m.bonds) {
-      const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+      const auto i = index(bond.i), j = index(bond.j);
       if (reached[i] == reached[j]) continue;
       tree.push_back(reached[i] ? std::array{i, j} : std::array{j, i});
       reached[i] = reached[j] = true;
@@ -64,19 +66,18 @@ void MoleculeStatistics<D>::measure(const Clock&, const Particles<D>& particles,
 template <int D>
 std::vector<double> MoleculeStatistics<D>::shapes(const Particles<D>& particles,
                                                   const Stage<D>& stage) const {
-  const std::vector<std::int32_t> index = particles.index_of_id();
+  const std::vector<std::int32_t> index_of = particles.index_of_id();
   std::vector<double> sums(shape_columns * population_.size(), 0.0);
   std::vector<Vec<D>> beads;
   for (const Molecule& m : scene_.molecules()) {
     const auto& settings = scene_.settings().molecules[m.kind];
-    const auto first = static_cast<std::size_t>(m.first);
+    const auto first = index(m.first);
     const auto place = [&](std::size_t bead) {
-      return stage.position[static_cast<std::size_t>(index[first + bead])];
+      return stage.position[index(index_of[first + bead])];
     };
     double* sum = &sums[shape_columns * m.kind];
     for (const auto& link : settings.bonds) {
-      const double r = norm(stage.box.separation(place(static_cast<std::size_t>(link.i)),
-                                                 place(static_cast<std::size_t>(link.j))));
+      const double r = norm(stage.box.separation(place(index(link.i)), place(index(link.j))));
       const double share = 1.0 / (population_[m.kind] * static_cast<double>(settings.bonds.size()));
       sum[0] += share * r;
       sum[1] += share * r * r;
@@ -99,7 +100,7 @@ std::vector<double> MoleculeStatistics<D>::shapes(const Particles<D>& particles,
 // What counts is how far a centre went: whether its beads lie in the same image does not matter.
 template <int D>
 void MoleculeStatistics<D>::follow(const Particles<D>& particles) {
-  const std::vector<std::int32_t> index = particles.index_of_id();
+  const std::vector<std::int32_t> index_of = particles.index_of_id();
   std::vector<double> centres;
   std::vector<std::int32_t> kinds;
   for (const Molecule& m : scene_.molecules()) {
@@ -107,7 +108,7 @@ void MoleculeStatistics<D>::follow(const Particles<D>& particles) {
     for (std::size_t c = 0; c < D; ++c) {
       double sum = 0.0;
       for (std::size_t k = 0; k < n; ++k) {
-        const auto i = static_cast<std::size_t>(index[static_cast<std::size_t>(m.first) + k]);
+        const auto i = index(index_of[index(m.first) + k]);
         sum += particles.position[i].x[c] + particles.image[i][c] * scene_.box().size.x[c];
       }
       centres.push_back(sum / static_cast<double>(n));

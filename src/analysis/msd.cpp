@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/core/index.h"
+
 namespace odpd {
 
 template <int D>
@@ -29,11 +31,10 @@ MsdSettings read_msd(const ObserverEntry<D>& entry) {
   }
   if (fallback.empty())
     for (int c = 0; c < D; ++c)
-      if (!scene.box().is_periodic(c)) fallback.push_back(names[static_cast<std::size_t>(c)]);
+      if (!scene.box().is_periodic(c)) fallback.push_back(names[index(c)]);
   if (fallback.empty())
     for (int c = 0; c < D; ++c)
-      if (!scene.box().shear || scene.box().shear->flow != c)
-        fallback.push_back(names[static_cast<std::size_t>(c)]);
+      if (!scene.box().shear || scene.box().shear->flow != c) fallback.push_back(names[index(c)]);
   for (const std::string& name : config.texts("directions", fallback)) {
     const auto at = std::find(names.begin(), names.end(), name);
     if (at == names.end())
@@ -74,7 +75,7 @@ void Msd<D>::measure(const Clock&, const Particles<D>& particles, const StepReco
   std::vector<double> now(particles.position.size() * D);
   std::vector<std::int32_t> kind(particles.position.size(), -1);
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
-    const auto id = static_cast<std::size_t>(particles.id[i]);
+    const auto id = index(particles.id[i]);
     if (particles.is_free(i)) kind[id] = particles.species[i];
     for (std::size_t c = 0; c < D; ++c)
       now[id * D + c] = particles.position[i].x[c] + particles.image[i][c] * scene_.box().size.x[c];
@@ -122,7 +123,7 @@ void Msd<D>::add_results(Results& results) const {
     table.columns.insert(table.columns.end(),
                          {"msd_" + species[a].name, "msd_" + species[a].name + "_error"});
     Curve curve{.title = species[a].name, .x = {}, .y = {}, .error = {}};
-    for (std::size_t lag = 0; lag < static_cast<std::size_t>(displacements_.lags()); ++lag) {
+    for (std::size_t lag = 0; lag < index(displacements_.lags()); ++lag) {
       const std::size_t column = lag * species_ + a;
       table.rows[lag].insert(table.rows[lag].end(), {msd.mean(column), msd.standard_error(column)});
       curve.x.push_back(table.rows[lag][0]);

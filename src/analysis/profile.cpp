@@ -9,12 +9,13 @@
 #include "odpd/analysis/least_squares.h"
 #include "odpd/analysis/observer_keys.h"
 #include "odpd/analysis/thermo.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
 template <int D>
 Profile<D>::Profile(ObserverSettings settings, ProfileSettings profile, const Scene<D>& scene)
-    : Observer<D>(std::move(settings), width * static_cast<std::size_t>(profile.bins)),
+    : Observer<D>(std::move(settings), width * index(profile.bins)),
       profile_(profile),
       scene_(scene),
       low_(scene.fluid_low()[profile.axis]),
@@ -88,20 +89,16 @@ void Profile<D>::measure(const Clock&, const Particles<D>& particles, const Step
     if (!particles.is_free(i)) continue;
     Vec<D> middle = record.start.position[i] + (0.5 * record.dt) * record.v_mid[i];
     Vec<D> velocity = record.v_mid[i];
-    std::array<std::int32_t, static_cast<std::size_t>(D)> image{};
+    std::array<std::int32_t, index(D)> image{};
     box.wrap(middle, image);
-    if (box.shear)
-      velocity[box.shear->flow] -=
-          image[static_cast<std::size_t>(box.shear->gradient)] * box.sliding;
+    if (box.shear) velocity[box.shear->flow] -= image[index(box.shear->gradient)] * box.sliding;
     if (const std::int64_t bin = bin_of(middle); bin >= 0) {
-      sample[column(static_cast<std::size_t>(bin), 0)] += 1.0;
-      for (int c = 0; c < D; ++c)
-        sample[column(static_cast<std::size_t>(bin), static_cast<std::size_t>(c) + 1)] +=
-            velocity[c];
+      sample[column(index(bin), 0)] += 1.0;
+      for (int c = 0; c < D; ++c) sample[column(index(bin), index(c) + 1)] += velocity[c];
     }
     if (const std::int64_t bin = bin_of(record.start.position[i]); bin >= 0) {
-      sample[column(static_cast<std::size_t>(bin), D + 1)] += force_squared[i];
-      sample[column(static_cast<std::size_t>(bin), D + 2)] += laplacian[i];
+      sample[column(index(bin), D + 1)] += force_squared[i];
+      sample[column(index(bin), D + 2)] += laplacian[i];
     }
   }
   this->add(std::move(sample));
@@ -119,7 +116,7 @@ Table Profile<D>::table() const {
   }
   t.columns.insert(t.columns.end(), {"config_temperature", "config_temperature_error"});
   const double bin_volume = scene_.fluid_volume() / static_cast<double>(profile_.bins);
-  for (std::size_t b = 0; b < static_cast<std::size_t>(profile_.bins); ++b) {
+  for (std::size_t b = 0; b < index(profile_.bins); ++b) {
     std::vector<double> row{centre(b), average.mean(column(b, 0)) / bin_volume,
                             average.standard_error(column(b, 0)) / bin_volume};
     for (std::size_t c = 1; c <= D; ++c) {
@@ -144,7 +141,7 @@ void Profile<D>::add_results(Results& results) const {
   velocity.x_label = fmt::format("{} / r_c", "xyz"[profile_.axis]);
   velocity.y_label = fmt::format("v_{}", "xyz"[profile_.component]);
   Curve measured{.title = "measured", .x = {}, .y = {}, .error = {}};
-  const auto v = static_cast<std::size_t>(3 + 2 * profile_.component);
+  const auto v = index(3 + 2 * profile_.component);
   for (const auto& row : t.rows) {
     measured.x.push_back(row[0]);
     measured.y.push_back(row[v]);
@@ -185,7 +182,7 @@ double Profile<D>::fitted_force() const {
     if (region.axis != profile_.axis) return 0.0;
   const double half = 0.499 * (high_ - low_) / static_cast<double>(profile_.bins);
   std::optional<double> force;
-  for (std::size_t b = 0; b < static_cast<std::size_t>(profile_.bins); ++b) {
+  for (std::size_t b = 0; b < index(profile_.bins); ++b) {
     if (centre(b) < profile_.fit_from || centre(b) > profile_.fit_to) continue;
     for (const double x : {centre(b) - half, centre(b) + half}) {
       Vec<D> r{};
@@ -201,19 +198,19 @@ double Profile<D>::fitted_force() const {
 template <int D>
 typename Profile<D>::FittedBins Profile<D>::fit_bins() const {
   const BlockAverage& average = this->average();
-  const auto component = static_cast<std::size_t>(profile_.component) + 1;
+  const auto component = index(profile_.component) + 1;
   const int degree = profile_.fit == ProfileFit::parabola ? 2 : 1;
   const double nan = std::nan("");
   FittedBins fitted{.found = true, .fit = {}, .bins = {}};
   std::vector<double> x, y, error;
-  for (std::size_t b = 0; b < static_cast<std::size_t>(profile_.bins); ++b) {
+  for (std::size_t b = 0; b < index(profile_.bins); ++b) {
     if (centre(b) < profile_.fit_from || centre(b) > profile_.fit_to) continue;
     const std::vector<BlockAverage::RatioTerm> term{{1.0, column(b, component), column(b, 0)}};
     const double e = average.ratio_error(term);
     if (!(e > 0.0)) {
       fitted.found = false;
       fitted.density = nan;
-      fitted.fit.coefficient.assign(static_cast<std::size_t>(degree) + 1, nan);
+      fitted.fit.coefficient.assign(index(degree) + 1, nan);
       fitted.fit.reduced_chi_square = nan;
       return fitted;
     }
@@ -346,9 +343,9 @@ std::vector<double> Profile<D>::series_row() const {
   std::vector<double> row;
   const std::vector<double>& newest = this->newest();
   if (newest.empty()) return row;
-  for (std::size_t b = 0; b < static_cast<std::size_t>(profile_.bins); ++b) {
+  for (std::size_t b = 0; b < index(profile_.bins); ++b) {
     row.push_back(newest[column(b, 0)]);
-    row.push_back(newest[column(b, static_cast<std::size_t>(profile_.component) + 1)]);
+    row.push_back(newest[column(b, index(profile_.component) + 1)]);
   }
   return row;
 }

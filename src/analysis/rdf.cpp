@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "odpd/analysis/observer_keys.h"
+#include "odpd/core/index.h"
 #include "odpd/geometry/pair_list.h"
 
 namespace odpd {
@@ -27,9 +28,9 @@ std::size_t pairs_of(const Scene<D>& scene) {
 template <int D>
 Rdf<D>::Rdf(ObserverSettings settings, double r_max, std::int64_t bins, const Scene<D>& scene,
             std::optional<RdfComparison> comparison)
-    : Observer<D>(std::move(settings), pairs_of(scene) * static_cast<std::size_t>(bins)),
+    : Observer<D>(std::move(settings), pairs_of(scene) * index(bins)),
       r_max_(r_max),
-      bins_(static_cast<std::size_t>(bins)),
+      bins_(index(bins)),
       scene_(scene),
       species_(scene.settings().species.size()),
       comparison_(comparison) {}
@@ -57,7 +58,7 @@ template <int D>
 std::vector<double> Rdf<D>::factors(const Particles<D>& particles) const {
   std::vector<double> count(species_, 0.0);
   for (std::size_t i = 0; i < particles.position.size(); ++i)
-    if (particles.is_free(i)) count[static_cast<std::size_t>(particles.species[i])] += 1.0;
+    if (particles.is_free(i)) count[index(particles.species[i])] += 1.0;
   const double dr = r_max_ / static_cast<double>(bins_);
   std::vector<double> factor;
   for (std::size_t a = 0; a < species_; ++a)
@@ -74,8 +75,8 @@ std::vector<double> Rdf<D>::factors(const Particles<D>& particles) const {
 
 template <int D>
 std::size_t Rdf<D>::pair_index(std::int32_t a, std::int32_t b) const {
-  const auto low = static_cast<std::size_t>(std::min(a, b));
-  const auto high = static_cast<std::size_t>(std::max(a, b));
+  const auto low = index(std::min(a, b));
+  const auto high = index(std::max(a, b));
   return low * species_ - low * (low + 1) / 2 + high;  // row-major upper triangle
 }
 
@@ -87,10 +88,10 @@ void Rdf<D>::measure(const Clock&, const Particles<D>& particles, const StepReco
   list.update(r);
   std::vector<double> sample(this->average().width(), 0.0);
   for (std::int64_t row = 0; row < list.rows(); ++row) {
-    const auto i = static_cast<std::size_t>(row);
+    const auto i = index(row);
     if (!particles.is_free(i)) continue;
     for (const std::int32_t partner : list.partners(row)) {
-      const auto j = static_cast<std::size_t>(partner);
+      const auto j = index(partner);
       if (!particles.is_free(j)) continue;
       const double distance = norm(box.separation(r[i], r[j]));
       const auto bin = static_cast<std::size_t>(distance / r_max_ * static_cast<double>(bins_));

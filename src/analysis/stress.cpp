@@ -7,6 +7,7 @@
 
 #include "odpd/analysis/observer_keys.h"
 #include "odpd/analysis/places.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
 
@@ -20,9 +21,7 @@ class StressGrid {
   StressGrid(const Scene<D>& scene, const StressBins& bins)
       : box_(scene.box()), low_(scene.fluid_low()), high_(scene.fluid_high()), bins_(bins) {}
 
-  std::size_t width() const {
-    return (stress_parts + static_cast<std::size_t>(bins_.bins)) * D * D;
-  }
+  std::size_t width() const { return (stress_parts + index(bins_.bins)) * D * D; }
   // a (x) b on the line from r to r - arm (r inside the box, arm to the nearest image).
   void add_line(StressPart part, const Vec<D>& r, const Vec<D>& arm, const Vec<D>& a,
                 const Vec<D>& b, double* sum) const {
@@ -78,7 +77,7 @@ class StressGrid {
     auto b = static_cast<std::int64_t>(bin);
     if (box_.is_periodic(bins_.axis)) b = (b % bins_.bins + bins_.bins) % bins_.bins;
     b = std::clamp<std::int64_t>(b, 0, bins_.bins - 1);
-    return (stress_parts + static_cast<std::size_t>(b)) * D * D;
+    return (stress_parts + index(b)) * D * D;
   }
   void add(std::size_t at, double weight, const Vec<D>& a, const Vec<D>& b, double* sum) const {
     for (int row = 0; row < D; ++row)
@@ -97,11 +96,10 @@ template <class Item>
 void add_in_blocks(std::size_t n, std::size_t width, const Item& item, std::vector<double>& sum) {
   constexpr std::int64_t length = 4096;
   const auto count = static_cast<std::int64_t>(n);
-  std::vector<double> blocks(static_cast<std::size_t>((count + length - 1) / length) * width, 0.0);
+  std::vector<double> blocks(index((count + length - 1) / length) * width, 0.0);
   parallel_ranges(count, length, [&](std::int64_t begin, std::int64_t end) {
-    double* const block = blocks.data() + static_cast<std::size_t>(begin / length) * width;
-    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
-      item(k, block);
+    double* const block = blocks.data() + index(begin / length) * width;
+    for (auto k = index(begin); k < index(end); ++k) item(k, block);
   });
   for (std::size_t k = 0; k < blocks.size(); ++k) sum[k % width] += blocks[k];
 }
@@ -111,7 +109,7 @@ void add_stage_stress(const StressGrid<D>& grid, const Places<D>& places, const 
                       double weight, std::vector<double>& sum) {
   const PairNetwork<D>& network = stage.network;
   const auto edge = [&](std::size_t k, double* into) {
-    const Vec<D> r = places.at(static_cast<std::size_t>(network.i[k]));
+    const Vec<D> r = places.at(index(network.i[k]));
     const Vec<D> arm = places.between(network, k);
     const Vec<D> push = network.push(k);
     if (push != Vec<D>{}) grid.add_line(conservative_part, r, arm, arm, weight * push, into);
@@ -148,9 +146,8 @@ void add_kinetic(const StressGrid<D>& grid, const Places<D>& places, const Scene
     const auto n = static_cast<double>(body.members.size());
     Vec<D> v{};
     for (const std::int64_t id : body.members)
-      if (moving)
-        v += (1.0 / n) * record.v_start[static_cast<std::size_t>(at[static_cast<std::size_t>(id)])];
-    const auto first = static_cast<std::size_t>(at[static_cast<std::size_t>(body.members[0])]);
+      if (moving) v += (1.0 / n) * record.v_start[index(at[index(id)])];
+    const auto first = index(at[index(body.members[0])]);
     if (const Box<D>& box = record.start.box; moving && box.shear)
       v[box.shear->flow] -= record.start.crossed[first] * box.sliding;
     add(places.at(first), mass * n, v);
@@ -175,8 +172,8 @@ std::vector<double> stress_of(const Scene<D>& scene, const Particles<D>& particl
                      1.0 - record.start_weight, sum);
   const auto noise = [&](std::size_t k, double* into) {
     const Vec<D> arm = places.between(start.network, k);
-    grid.add_line(noise_part, places.at(static_cast<std::size_t>(start.network.i[k])), arm, arm,
-                  record.edge_noise[k], into);
+    grid.add_line(noise_part, places.at(index(start.network.i[k])), arm, arm, record.edge_noise[k],
+                  into);
   };
   add_in_blocks(record.edge_noise.size(), grid.width(), noise, sum);
 
@@ -189,8 +186,7 @@ std::vector<double> stress_of(const Scene<D>& scene, const Particles<D>& particl
 
 template <int D>
 Stress<D>::Stress(ObserverSettings settings, StressBins bins, const Scene<D>& scene)
-    : Observer<D>(std::move(settings),
-                  bin_column + static_cast<std::size_t>(bins.bins) * components),
+    : Observer<D>(std::move(settings), bin_column + index(bins.bins) * components),
       bins_(bins),
       scene_(scene) {}
 
@@ -254,7 +250,7 @@ void Stress<D>::add_profile(Results& results) const {
     std::vector<double> row{low + (high - low) * (static_cast<double>(b) + 0.5) /
                                       static_cast<double>(bins_.bins)};
     for (std::size_t k = 0; k < components; ++k) {
-      const std::size_t column = bin_column + static_cast<std::size_t>(b) * components + k;
+      const std::size_t column = bin_column + index(b) * components + k;
       row.insert(row.end(), {this->average().mean(column), this->average().standard_error(column)});
     }
     table.rows.push_back(std::move(row));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "odpd/analysis/places.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
 
@@ -66,13 +67,13 @@ std::unique_ptr<Observer<D>> Thermo<D>::make(const ObserverEntry<D>& entry) {
 template <int D>
 void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
   const PairNetwork<D>& network = record.start.network;
-  std::vector<double> force_squared, laplacian, virial(static_cast<std::size_t>(network.size()));
+  std::vector<double> force_squared, laplacian, virial(index(network.size()));
   double wall_energy = 0.0;
   configurational_terms(scene_, particles, record.start, force_squared, laplacian, wall_energy);
   const Places<D> places(particles, record.start);
   for (std::size_t k = 0; k < virial.size(); ++k) {
-    const bool known = particles.is_known(static_cast<std::size_t>(network.i[k])) ||
-                       particles.is_known(static_cast<std::size_t>(network.j[k]));
+    const bool known =
+        particles.is_known(index(network.i[k])) || particles.is_known(index(network.j[k]));
     virial[k] = (known ? 0.5 : 1.0) * dot(places.between(network, k), network.push(k));
   }
   const auto n = static_cast<double>(particles.free_count());

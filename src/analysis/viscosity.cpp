@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/core/index.h"
+
 namespace odpd {
 
 namespace {
@@ -57,8 +59,8 @@ template <int D>
 bool sheared_across(const SceneSettings<D>& s, ViscosityScene& v) {
   for (v.axis = 0; v.axis < D; ++v.axis) {
     if (!facing_walls(s, v.axis)) continue;
-    const auto& low = s.walls[static_cast<std::size_t>(s.wall_at(v.axis, false))];
-    const auto& high = s.walls[static_cast<std::size_t>(s.wall_at(v.axis, true))];
+    const auto& low = s.walls[index(s.wall_at(v.axis, false))];
+    const auto& high = s.walls[index(s.wall_at(v.axis, true))];
     for (v.component = 0; v.component < D; ++v.component)
       if (low.velocity[v.component] != high.velocity[v.component]) return true;
   }
@@ -171,7 +173,7 @@ Viscosity<D>::Viscosity(ObserverSettings settings, const ViscositySettings& visc
                                            1, std::llround(viscosity.window / (50 * dt))),
                                        .volume = scene.fluid_volume(),
                                        .kT = scene.largest_kT()},
-                     static_cast<std::size_t>(D * (D - 1)));
+                     index(D * (D - 1)));
 }
 
 template <int D>

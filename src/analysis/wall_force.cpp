@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "odpd/core/index.h"
 #include "odpd/operator/edge_sums.h"
 
 namespace odpd {
@@ -39,9 +40,8 @@ void WallForce<D>::add_stage(const Particles<D>& particles, const Stage<D>& stag
   add_sliding_friction(stage.network, force);
   for (std::size_t i = 0; i < force.size(); ++i) {
     if (!particles.is_known(i) || particles.body_of(i) >= 0) continue;
-    const auto wall = static_cast<std::size_t>(particles.group[i] - 1);
-    for (int c = 0; c < D; ++c)
-      sample[wall * D + static_cast<std::size_t>(c)] += weight * force[i][c] / area(wall);
+    const auto wall = index(particles.group[i] - 1);
+    for (int c = 0; c < D; ++c) sample[wall * D + index(c)] += weight * force[i][c] / area(wall);
   }
   // The potential pushes a particle off the wall it is behind, and the wall the other way.
   std::vector<Vec<D>> push(stage.position.size());
@@ -51,7 +51,7 @@ void WallForce<D>::add_stage(const Particles<D>& particles, const Stage<D>& stag
     double reaction = 0.0;
     for (const Vec<D>& f : push)
       if (wall.high ? f[wall.axis] < 0.0 : f[wall.axis] > 0.0) reaction -= f[wall.axis];
-    sample[w * D + static_cast<std::size_t>(wall.axis)] += weight * reaction / area(w);
+    sample[w * D + index(wall.axis)] += weight * reaction / area(w);
   }
 }
 
@@ -71,7 +71,7 @@ void WallForce<D>::measure(const Clock&, const Particles<D>& particles,
     if (settings.walls[w].high || facing < 0) continue;
     for (std::size_t c = 0; c < D; ++c)
       sample[(settings.walls.size() + w) * D + c] =
-          0.5 * (sample[w * D + c] - sample[static_cast<std::size_t>(facing) * D + c]);
+          0.5 * (sample[w * D + c] - sample[index(facing) * D + c]);
   }
   this->add(std::move(sample));
 }
@@ -98,7 +98,7 @@ void WallForce<D>::add_results(Results& results) const {
     if (wall.high || settings.wall_at(wall.axis, true) < 0) continue;
     for (int c = 0; c < D; ++c) {
       if (c == wall.axis) continue;
-      const std::size_t column = (settings.walls.size() + w) * D + static_cast<std::size_t>(c);
+      const std::size_t column = (settings.walls.size() + w) * D + index(c);
       results.scalars.push_back(
           this->mean_of(column, this->named(fmt::format("shear_stress.{}", "xyz"[c]))));
     }

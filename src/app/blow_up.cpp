@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "odpd/analysis/thermo.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
 
@@ -79,8 +80,7 @@ auto BlowUpWatch<D>::sum_pairs(const Stage<D>& stage, double dt) const -> Pairs 
   for (const PairMoments& p : scene_.pair_moments()) reach = std::max(reach, p.range);
   Pairs sum;
   for (std::size_t k = 0; k < network.i.size(); ++k) {
-    const auto i = static_cast<std::size_t>(network.i[k]),
-               j = static_cast<std::size_t>(network.j[k]);
+    const auto i = index(network.i[k]), j = index(network.j[k]);
     if (network.r[k] > reach || !particles.is_free(i) || !particles.is_free(j)) continue;
     sum.count += 1.0;
     const Vec<D> path = dt * network.slip(k, particles.velocity);
@@ -198,7 +198,7 @@ double BlowUpWatch<D>::friction_limit(const IntegratorSettings& integrator,
                                       const Stage<D>& stage) const {
   const int from = integrator_traits(integrator.name).friction_limits_dt_from;
   if (from == 0 || integrator.order < from) return std::numeric_limits<double>::infinity();
-  std::vector<std::array<double, static_cast<std::size_t>(D * D)>> blocks(stage.position.size());
+  std::vector<std::array<double, index(D * D)>> blocks(stage.position.size());
   add_friction_blocks<D>(stage.network, blocks);
   double trace = 0.0;
   for (std::size_t i = 0; i < blocks.size(); ++i)
@@ -239,7 +239,7 @@ std::string BlowUpWatch<D>::cure(const IntegratorSettings& integrator, const Sta
                     "trapezoidal or shardlow)",
                     dt, inertia, integrator.name));
   if (particle >= 0 && !stage.network.start.empty()) {
-    const auto i = scene_.particles().index_of_id()[static_cast<std::size_t>(particle)];
+    const auto i = scene_.particles().index_of_id()[index(particle)];
     const std::size_t neighbours = stage.network.edges_of(i).size();
     if (neighbours <= D)
       causes.push_back(

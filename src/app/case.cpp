@@ -12,6 +12,7 @@
 #include "odpd/app/calibration_file.h"
 #include "odpd/app/restart.h"
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/io/csv.h"
 #include "odpd/io/trajectory.h"
 
@@ -123,15 +124,15 @@ void find_species(SceneSettings<D>& scene, const std::vector<SpeciesWord>& words
     if (named(s.word) == count && number(s.word) >= 0) numbers.insert(number(s.word));
   const std::int64_t first = first_number(scene, numbers);
   for (const SpeciesWord& s : words) {
-    std::int64_t index = named(s.word);
-    if (index == count && number(s.word) >= 0) index = number(s.word) - first;
-    if (index < 0 || index >= count)
+    std::int64_t number_of = named(s.word);
+    if (number_of == count && number(s.word) >= 0) number_of = number(s.word) - first;
+    if (number_of < 0 || number_of >= count)
       throw ConfigError(fmt::format(
           "{}{}: species '{}' is not one of the case's [[species]]{}; add it there",
           scene.start_file, s.line > 0 ? fmt::format(":{}", s.line) : "", s.word,
           number(s.word) < 0 ? ""
                              : fmt::format(" (numbered from {}, start.first_species)", first)));
-    scene.start_species.push_back(static_cast<std::int32_t>(index));
+    scene.start_species.push_back(static_cast<std::int32_t>(number_of));
   }
 }
 
@@ -207,7 +208,7 @@ void take_offset(const Frame& frame, Box<D>& box, const std::string& file) {
   if (frame.edges.empty()) return;
   for (int row = 0; row < D; ++row)
     for (int c = 0; c < D; ++c) {
-      const double value = frame.edges[static_cast<std::size_t>(row * D + c)];
+      const double value = frame.edges[index(row * D + c)];
       if (row == c || value == 0.0) continue;
       if (!box.shear || box.shear->gradient != row || box.shear->flow != c)
         throw ConfigError(fmt::format(
@@ -244,7 +245,7 @@ void read_start_h5md(SceneSettings<D>& scene) {
     Vec<D> r;
     for (std::size_t c = 0; c < D; ++c) r.x[c] = frame.position[k * D + c];
     if (group != 0) {
-      const auto body = static_cast<std::size_t>(group < 0 ? -group - 1 : group - 1 - walls);
+      const auto body = index(group < 0 ? -group - 1 : group - 1 - walls);
       if (body >= n)
         throw ConfigError(fmt::format("{}: it has no body {}", scene.start_file, body));
       scene.start_bodies.resize(std::max(scene.start_bodies.size(), body + 1));
@@ -253,9 +254,9 @@ void read_start_h5md(SceneSettings<D>& scene) {
     }
     scene.start_positions.push_back(r);
     if (k >= frame.species.size()) continue;
-    const auto index = static_cast<std::size_t>(frame.species[k]);
-    words.push_back({index < frame.species_names.size() ? frame.species_names[index]
-                                                        : std::to_string(frame.species[k])});
+    const auto species = index(frame.species[k]);
+    words.push_back({species < frame.species_names.size() ? frame.species_names[species]
+                                                          : std::to_string(frame.species[k])});
   }
   find_species(scene, words);
 }

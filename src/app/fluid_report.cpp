@@ -11,6 +11,7 @@
 
 #include "odpd/analysis/viscosity.h"
 #include "odpd/app/report.h"
+#include "odpd/core/index.h"
 #include "odpd/pairs/dpd.h"
 #include "odpd/pairs/kinetic_theory.h"
 
@@ -41,7 +42,7 @@ std::vector<double> fractions(const Scene<D>& scene) {
   const Particles<D>& particles = scene.particles();
   std::vector<double> fraction(scene.settings().species.size(), 0.0);
   for (std::size_t i = 0; i < particles.position.size(); ++i)
-    if (particles.is_free(i)) fraction[static_cast<std::size_t>(particles.species[i])] += 1.0;
+    if (particles.is_free(i)) fraction[index(particles.species[i])] += 1.0;
   for (double& f : fraction)
     f /= static_cast<double>(std::max<std::int64_t>(1, particles.free_count()));
   return fraction;
@@ -119,7 +120,7 @@ FlowScale flow_scale(const Scene<D>& scene, double eta) {
   const double width = v.to - v.from + 2.0 * scene.model().cutoff();
   if (v.kind == Kind::sheared) {
     const auto wall = [&](bool high) {
-      return s.walls[static_cast<std::size_t>(s.wall_at(v.axis, high))].velocity[v.component];
+      return s.walls[index(s.wall_at(v.axis, high))].velocity[v.component];
     };
     return {0.5 * std::abs(wall(true) - wall(false)), width};
   }

@@ -1,5 +1,7 @@
 #include "odpd/app/scene_frame.h"
 
+#include "odpd/core/index.h"
+
 namespace odpd {
 
 std::vector<std::int64_t> bond_ends(const std::vector<Bond>& bonds) {
@@ -20,14 +22,14 @@ Frame scene_frame(const Scene<D>& scene, const Clock& clock) {
     frame.periodic.push_back(scene.box().is_periodic(c));
   }
   if (const Box<D> box = scene.box().at(clock.time()); box.shear) {
-    frame.edges.assign(static_cast<std::size_t>(D * D), 0.0);
-    for (int c = 0; c < D; ++c) frame.edges[static_cast<std::size_t>(c * (D + 1))] = box.size[c];
-    frame.edges[static_cast<std::size_t>(box.shear->gradient * D + box.shear->flow)] = box.offset;
+    frame.edges.assign(index(D * D), 0.0);
+    for (int c = 0; c < D; ++c) frame.edges[index(c * (D + 1))] = box.size[c];
+    frame.edges[index(box.shear->gradient * D + box.shear->flow)] = box.offset;
   }
   for (const SpeciesSettings& s : scene.settings().species) frame.species_names.push_back(s.name);
   frame.bonds = bond_ends(scene.bonds());
-  for (const std::int32_t index : particles.index_of_id()) {
-    const auto i = static_cast<std::size_t>(index);
+  for (const std::int32_t row : particles.index_of_id()) {
+    const auto i = index(row);
     frame.id.push_back(particles.id[i]);
     frame.species.push_back(particles.species[i]);
     frame.group.push_back(particles.group[i]);

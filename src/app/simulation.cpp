@@ -8,6 +8,7 @@
 
 #include "odpd/app/memory.h"
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/log.h"
 
 namespace odpd {
@@ -135,8 +136,7 @@ void Simulation<D>::judge() {
   }
   std::string moved;
   if (fastest >= 0) {
-    const Vec<D>& v = particles.velocity[static_cast<std::size_t>(
-        particles.index_of_id()[static_cast<std::size_t>(fastest)])];
+    const Vec<D>& v = particles.velocity[index(particles.index_of_id()[index(fastest)])];
     moved = fmt::format(", and particle {} moved furthest in the last step, by {:.3g}", fastest,
                         clock_.dt * std::sqrt(dot(v, v)));
   }

@@ -13,6 +13,7 @@
 #include "odpd/app/shell.h"
 #include "odpd/app/study_report.h"
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/io/file.h"
 #include "odpd/io/gnuplot.h"
 #include "odpd/io/run_lock.h"
@@ -143,7 +144,7 @@ bool run_points(const StudyExecution& execution, StudyResults& results) {
   results.outcomes.resize(results.plan.points.size());
   std::size_t total = 0;
   // Seeds outermost: an interrupted study has something of every point.
-  for (std::size_t r = 0; r < static_cast<std::size_t>(study.seeds); ++r)
+  for (std::size_t r = 0; r < index(study.seeds); ++r)
     for (std::size_t p = 0; p < results.plan.points.size(); ++p) {
       const StudyPoint& point = results.plan.points[p];
       results.outcomes[p].resize(point.runs.size());

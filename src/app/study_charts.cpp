@@ -181,10 +181,11 @@ StudyPicture stability_map(const StudyResults& results, const StudyObservable& o
   }
   for (const Finding* f : all) {
     const StudyPoint& point = results.plan.points[f->point];
-    const auto index = [&](std::size_t axis) { return axis == none ? 0 : point.at[axis]; };
-    const std::size_t row = panels ? index(across) : map.y_ticks.size() - 1 - index(across);
+    const auto coordinate = [&](std::size_t axis) { return axis == none ? 0 : point.at[axis]; };
+    const std::size_t row =
+        panels ? coordinate(across) : map.y_ticks.size() - 1 - coordinate(across);
     const Verdict shown = f->is_reference && !f->ended_with_error() ? Verdict::ok : f->verdict;
-    map.panels[panels ? index(study.method) : 0].rows[row][index(study.sweep)] = {
+    map.panels[panels ? coordinate(study.method) : 0].rows[row][coordinate(study.sweep)] = {
         shown == Verdict::missing   ? map.kinds.size()
         : shown == Verdict::ok      ? 0
         : shown == Verdict::biased  ? 1

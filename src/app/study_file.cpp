@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
@@ -106,7 +107,7 @@ StudyAxis read_axis(const Config& entry, bool quick) {
 }
 
 std::size_t axis_named(const std::vector<StudyAxis>& axes, const std::string& name) {
-  return static_cast<std::size_t>(
+  return index(
       std::find_if(axes.begin(), axes.end(), [&](const auto& a) { return a.name == name; }) -
       axes.begin());
 }
@@ -233,8 +234,7 @@ std::size_t StudyAxis::find(const std::string& label) const {
     const auto other = as_number(value.label);
     return number && other && *number == *other;
   };
-  return static_cast<std::size_t>(std::find_if(values.begin(), values.end(), same) -
-                                  values.begin());
+  return index(std::find_if(values.begin(), values.end(), same) - values.begin());
 }
 
 StudySettings read_study(const fs::path& path, bool quick) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "odpd/core/index.h"
+
 namespace odpd {
 
 namespace {
@@ -25,9 +27,9 @@ double blocked_sum(std::int64_t n, const Term& term) {
     for (std::int64_t k = 0; k < blocks; ++k) total += block_sum(k);
     return total;
   }
-  std::vector<double> partial(static_cast<std::size_t>(blocks));
+  std::vector<double> partial(index(blocks));
 #pragma omp parallel for schedule(static)
-  for (std::int64_t k = 0; k < blocks; ++k) partial[static_cast<std::size_t>(k)] = block_sum(k);
+  for (std::int64_t k = 0; k < blocks; ++k) partial[index(k)] = block_sum(k);
   for (double s : partial) total += s;
   return total;
 }
@@ -49,14 +51,13 @@ void set_threads(int threads, std::int64_t particles) {
 int threads() { return thread_count; }
 
 double fixed_dot(std::span<const double> a, std::span<const double> b) {
-  return blocked_sum(static_cast<std::int64_t>(a.size()), [&](std::int64_t i) {
-    return a[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(i)];
-  });
+  return blocked_sum(static_cast<std::int64_t>(a.size()),
+                     [&](std::int64_t i) { return a[index(i)] * b[index(i)]; });
 }
 
 double fixed_sum(std::span<const double> a) {
   return blocked_sum(static_cast<std::int64_t>(a.size()),
-                     [&](std::int64_t i) { return a[static_cast<std::size_t>(i)]; });
+                     [&](std::int64_t i) { return a[index(i)]; });
 }
 
 double fixed_norm(std::span<const double> a) { return std::sqrt(fixed_dot(a, a)); }

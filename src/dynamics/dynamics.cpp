@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/log.h"
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
@@ -95,7 +96,7 @@ void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage
   stage.potential_force.resize(positions.size());
   stage.driving_force.resize(positions.size());
   parallel_for(static_cast<std::int64_t>(positions.size()), [&](std::int64_t particle) {
-    const auto i = static_cast<std::size_t>(particle);
+    const auto i = index(particle);
     stage.potential_force[i] = stage.driving_force[i] = Vec<D>{};
   });
   if (model_.conservative()) add_conservative_forces(stage.network, stage.potential_force);
@@ -109,7 +110,7 @@ auto Dynamics<D>::draw_noise(const Stage<D>& stage, std::int64_t step, double dt
   const PhaseTimer timer(phases_, Phase::noise);
   if (!model_.thermal()) {
     edge_noise.clear();
-    return Unknowns(static_cast<std::size_t>(motion_.dofs().unknowns()), 0.0);
+    return Unknowns(index(motion_.dofs().unknowns()), 0.0);
   }
   draw_edge_noise(stage.network, particles_, settings_.seed, static_cast<std::uint64_t>(step), dt,
                   edge_noise);
@@ -128,7 +129,7 @@ auto Dynamics<D>::force(const Stage<D>& stage) -> Unknowns {
   const PhaseTimer timer(phases_, Phase::assembly);
   std::vector<Vec<D>> force(stage.position.size());
   parallel_for(static_cast<std::int64_t>(force.size()), [&](std::int64_t particle) {
-    const auto i = static_cast<std::size_t>(particle);
+    const auto i = index(particle);
     force[i] = stage.potential_force[i] + stage.driving_force[i];
   });
   if (motion_.dofs().sites() < motion_.dofs().particles()) {
@@ -146,7 +147,7 @@ auto Dynamics<D>::force(const Stage<D>& stage) -> Unknowns {
   add_sliding_friction(stage.network, force);
   Unknowns f;
   motion_.dofs().gather(stage.arms, force, f);
-  for (std::size_t b = 0; b < static_cast<std::size_t>(motion_.dofs().bodies()); ++b) {
+  for (std::size_t b = 0; b < index(motion_.dofs().bodies()); ++b) {
     const RigidLoad<D> load = surroundings_.body_load(b, stage.time);
     for (std::size_t c = 0; c < D; ++c) {
       f[b * D + c] += load.torque.x[c];

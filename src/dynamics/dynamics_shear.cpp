@@ -1,4 +1,5 @@
 // The parts of Dynamics that know sliding images.
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/dynamics/dynamics.h"
 
@@ -10,9 +11,8 @@ void Dynamics<D>::write_slips(Stage<D>& stage) const {
   network.slip_0.resize(box_.shear ? network.i.size() : 0);
   if (!box_.shear) return;
   parallel_for(network.size(), [&](std::int64_t edge) {
-    const auto k = static_cast<std::size_t>(edge);
-    const auto i = static_cast<std::size_t>(network.i[k]),
-               j = static_cast<std::size_t>(network.j[k]);
+    const auto k = index(edge);
+    const auto i = index(network.i[k]), j = index(network.j[k]);
     const int up = stage.box.images_up(stage.position[i] - stage.position[j]) + stage.crossed[i] -
                    stage.crossed[j];
     network.slip_0[k] = Vec<D>{};
@@ -40,14 +40,14 @@ template <int D>
 void Dynamics<D>::add_mean_flow(const Stage<D>& stage, Unknowns& q) {
   Vec<D> mean{};
   const auto add = [&](std::int32_t particle, const Vec<D>& arm) {
-    const auto i = static_cast<std::size_t>(particle);
+    const auto i = index(particle);
     mean += stage.box.flow_velocity(stage.position[i] - arm);
     mean[box_.shear->flow] += stage.crossed[i] * stage.box.sliding;
   };
   for (const std::int32_t particle : motion_.dofs().free_particles()) add(particle, {});
-  for (std::size_t b = 0; b < static_cast<std::size_t>(motion_.dofs().bodies()); ++b) {
+  for (std::size_t b = 0; b < index(motion_.dofs().bodies()); ++b) {
     const std::int32_t first = motion_.dofs().constituents(b).front();
-    add(first, stage.arms[static_cast<std::size_t>(first)]);
+    add(first, stage.arms[index(first)]);
   }
   const Translations translations = motion_.dofs().translations();
   mean *= 1.0 / static_cast<double>(translations.nodes);

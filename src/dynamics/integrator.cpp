@@ -1,6 +1,7 @@
 #include "odpd/dynamics/integrator.h"
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
@@ -33,13 +34,12 @@ namespace {
 template <int D>
 std::vector<std::size_t> places(Dynamics<D>& dynamics) {
   const DofMap<D>& dofs = dynamics.dofs();
-  std::vector<std::size_t> place(static_cast<std::size_t>(dofs.nodes()));
+  std::vector<std::size_t> place(index(dofs.nodes()));
   const auto free = dofs.free_particles();
   for (std::size_t k = 0; k < free.size(); ++k)
-    place[dofs.free_node(k)] =
-        static_cast<std::size_t>(dynamics.particles().id[static_cast<std::size_t>(free[k])]);
-  auto next = static_cast<std::size_t>(dofs.particles());
-  for (std::size_t b = 0; b < static_cast<std::size_t>(dofs.bodies()); ++b) {
+    place[dofs.free_node(k)] = index(dynamics.particles().id[index(free[k])]);
+  auto next = index(dofs.particles());
+  for (std::size_t b = 0; b < index(dofs.bodies()); ++b) {
     place[b] = next++;
     place[dofs.body_node(b)] = next++;
   }
@@ -52,8 +52,8 @@ template <int D>
 std::vector<double> by_identity(Dynamics<D>& dynamics, const std::vector<double>& q) {
   const std::vector<std::size_t> place = places(dynamics);
   const auto entries = dynamics.dofs().particles() + 2 * dynamics.dofs().bodies();
-  const auto block = static_cast<std::size_t>(dynamics.dofs().block_size());
-  std::vector<double> values(static_cast<std::size_t>(entries) * block, 0.0);
+  const auto block = index(dynamics.dofs().block_size());
+  std::vector<double> values(index(entries) * block, 0.0);
   for (std::size_t n = 0; n < place.size(); ++n)
     for (std::size_t c = 0; c < block; ++c) values[place[n] * block + c] = q[n * block + c];
   return values;
@@ -62,8 +62,8 @@ std::vector<double> by_identity(Dynamics<D>& dynamics, const std::vector<double>
 template <int D>
 std::vector<double> from_identity(Dynamics<D>& dynamics, const std::vector<double>& values) {
   const auto entries = dynamics.dofs().particles() + 2 * dynamics.dofs().bodies();
-  const auto block = static_cast<std::size_t>(dynamics.dofs().block_size());
-  if (values.size() != static_cast<std::size_t>(entries) * block)
+  const auto block = index(dynamics.dofs().block_size());
+  if (values.size() != index(entries) * block)
     throw IoError(
         "the checkpoint's integrator arrays do not fit the particles: it is damaged or of another "
         "case");

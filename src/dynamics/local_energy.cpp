@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
@@ -16,7 +17,7 @@ LocalEnergy<D>::LocalEnergy(const Box<D>& box, const PairModel<D>& model,
       surroundings_(surroundings),
       particles_(particles),
       grid_(box, model.cutoff(), particles.position),
-      around_(static_cast<std::size_t>(grid_.cells())),
+      around_(index(grid_.cells())),
       members_(around_.size()),
       cell_(particles.position.size()),
       candidates_(particles.position.size()),
@@ -33,7 +34,7 @@ void LocalEnergy<D>::place() {
   for (std::size_t i = 0; i < cell_.size(); ++i) {
     const Vec<D>& r = particles_.position[i];
     cell_[i] = grid_.cell_of(r);
-    members_[static_cast<std::size_t>(cell_[i])].push_back({r, static_cast<std::int32_t>(i)});
+    members_[index(cell_[i])].push_back({r, static_cast<std::int32_t>(i)});
   }
   if (densities_ != nullptr) sum_densities();
 }
@@ -43,8 +44,8 @@ template <int D>
 std::span<const typename LocalEnergy<D>::Partner> LocalEnergy<D>::partners_of(const Vec<D>& r) {
   const double reach2 = model_.cutoff() * model_.cutoff();
   std::size_t found = 0;
-  for (const std::int64_t cell : around_[static_cast<std::size_t>(grid_.cell_of(r))])
-    for (const Member& other : members_[static_cast<std::size_t>(cell)]) {
+  for (const std::int64_t cell : around_[index(grid_.cell_of(r))])
+    for (const Member& other : members_[index(cell)]) {
       double r2 = 0.0;
       for (int c = 0; c < D; ++c) {
         const double d = std::abs(r[c] - other.r[c]);
@@ -52,7 +53,7 @@ std::span<const typename LocalEnergy<D>::Partner> LocalEnergy<D>::partners_of(co
         r2 += nearest * nearest;
       }
       candidates_[found] = {r2, other.index};
-      found += static_cast<std::size_t>(r2 < reach2);
+      found += index(r2 < reach2);
     }
   return {candidates_.data(), found};
 }
@@ -72,7 +73,7 @@ double LocalEnergy<D>::at(std::size_t i, const Vec<D>& r, double sign) {
   const Site site = site_of(particles_, i);
   const auto partners = partners_of(r);
   for (const Partner& other : partners) {
-    const auto j = static_cast<std::size_t>(other.index);
+    const auto j = index(other.index);
     if (meet(i, j)) energy += model_.pair(std::sqrt(other.r2), site, site_of(particles_, j)).u;
   }
   if (densities_ != nullptr) weigh(i, partners, sign);
@@ -83,12 +84,12 @@ template <int D>
 double LocalEnergy<D>::change(std::span<const std::int32_t> moved, std::span<const Vec<D>> to) {
   moved_.assign(moved.begin(), moved.end());
   to_.assign(to.begin(), to.end());
-  for (const NewDensity& one : new_) slot_[static_cast<std::size_t>(one.index)] = -1;
+  for (const NewDensity& one : new_) slot_[index(one.index)] = -1;
   new_.clear();
   double change = 0.0;
   for (std::size_t k = 0; k < moved_.size(); ++k) {
-    const auto i = static_cast<std::size_t>(moved_[k]);
-    const std::int32_t group = particles_.group[static_cast<std::size_t>(moved_[0])];
+    const auto i = index(moved_[k]);
+    const std::int32_t group = particles_.group[index(moved_[0])];
     if (k > 0 && (group == 0 || particles_.group[i] != group))
       throw ConfigError("particles that move at once must be constituents of one body");
     const double there = at(i, to_[k], 1.0), here = at(i, particles_.position[i], -1.0);
@@ -99,9 +100,8 @@ double LocalEnergy<D>::change(std::span<const std::int32_t> moved, std::span<con
 
 template <int D>
 void LocalEnergy<D>::accept() {
-  for (std::size_t k = 0; k < moved_.size(); ++k) move(static_cast<std::size_t>(moved_[k]), to_[k]);
-  for (const NewDensity& one : new_)
-    density_[static_cast<std::size_t>(one.index)] = {one.d, one.psi};
+  for (std::size_t k = 0; k < moved_.size(); ++k) move(index(moved_[k]), to_[k]);
+  for (const NewDensity& one : new_) density_[index(one.index)] = {one.d, one.psi};
 }
 
 template <int D>
@@ -114,7 +114,7 @@ void LocalEnergy<D>::sum_densities() {
     const Site site = site_of(particles_, i);
     double d = densities_->self(site);
     for (const Partner& other : partners_of(particles_.position[i])) {
-      const auto j = static_cast<std::size_t>(other.index);
+      const auto j = index(other.index);
       if (j != i) d += densities_->weight(std::sqrt(other.r2), site, site_of(particles_, j)).value;
     }
     density_[i] = {d, densities_->energy(site_of(particles_, i, d)).value};
@@ -127,7 +127,7 @@ double& LocalEnergy<D>::new_density(std::size_t i) {
     slot_[i] = static_cast<std::int32_t>(new_.size());
     new_.push_back({static_cast<std::int32_t>(i), density_[i].d, 0.0});
   }
-  return new_[static_cast<std::size_t>(slot_[i])].d;
+  return new_[index(slot_[i])].d;
 }
 
 template <int D>
@@ -135,7 +135,7 @@ void LocalEnergy<D>::weigh(std::size_t i, std::span<const Partner> partners, dou
   const Site site = site_of(particles_, i);
   double sum = 0.0;
   for (const Partner& other : partners) {
-    const auto j = static_cast<std::size_t>(other.index);
+    const auto j = index(other.index);
     if (!meet(i, j)) continue;
     const double w = densities_->weight(std::sqrt(other.r2), site, site_of(particles_, j)).value;
     new_density(j) += sign * w;
@@ -148,7 +148,7 @@ template <int D>
 double LocalEnergy<D>::density_change() {
   double change = 0.0;
   for (NewDensity& one : new_) {
-    const auto i = static_cast<std::size_t>(one.index);
+    const auto i = index(one.index);
     one.psi = densities_->energy(site_of(particles_, i, one.d)).value;
     change += one.psi - density_[i].psi;
   }
@@ -158,7 +158,7 @@ double LocalEnergy<D>::density_change() {
 template <int D>
 void LocalEnergy<D>::move(std::size_t i, const Vec<D>& r) {
   const auto self = static_cast<std::int32_t>(i);
-  auto& from = members_[static_cast<std::size_t>(cell_[i])];
+  auto& from = members_[index(cell_[i])];
   const auto at =
       std::find_if(from.begin(), from.end(), [self](const Member& m) { return m.index == self; });
   const std::int64_t cell = grid_.cell_of(r);
@@ -168,7 +168,7 @@ void LocalEnergy<D>::move(std::size_t i, const Vec<D>& r) {
   }
   *at = from.back();
   from.pop_back();
-  members_[static_cast<std::size_t>(cell)].push_back({r, self});
+  members_[index(cell)].push_back({r, self});
   cell_[i] = cell;
 }
 

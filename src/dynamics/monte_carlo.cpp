@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/random.h"
 
 namespace odpd {
@@ -79,7 +80,7 @@ bool MonteCarlo<D>::try_move(Dynamics<D>& dynamics, std::size_t i, const std::ar
   Vec<D> r = particles.position[i];
   auto image = particles.image[i];
   for (int c = 0; c < D; ++c) {
-    r[c] += step_ * (2.0 * u[static_cast<std::size_t>(c)] - 1.0);
+    r[c] += step_ * (2.0 * u[index(c)] - 1.0);
     if (!box.is_periodic(c) && (r[c] < 0.0 || r[c] > box.size[c])) return false;
   }
   // A body force acts along bounded directions only, where nothing wraps.
@@ -106,18 +107,17 @@ bool MonteCarlo<D>::try_body(Dynamics<D>& dynamics, std::size_t body, const Coun
   const auto shift = random.uniforms(static_cast<std::uint64_t>(step), 1, body, 0);
   const auto turn = random.uniforms(static_cast<std::uint64_t>(step), 2, body, 0);
   RigidMotion<D> motion;
-  for (int c = 0; c < D; ++c)
-    motion.velocity[c] = step_ * (2.0 * shift[static_cast<std::size_t>(c)] - 1.0);
+  for (int c = 0; c < D; ++c) motion.velocity[c] = step_ * (2.0 * shift[index(c)] - 1.0);
   const double angle = std::min(step_ / radius, std::numbers::pi / 2.0);
   for (int c = 0; c < rotation_components<D>; ++c)
-    motion.angular[c] = angle * (2.0 * turn[static_cast<std::size_t>(c)] - 1.0);
+    motion.angular[c] = angle * (2.0 * turn[index(c)] - 1.0);
   RigidPose<D> pose = b.pose;
   pose.advance(motion, 1.0, box);
   std::vector<Vec<D>> position(constituents.size());
   std::vector<typename Particles<D>::Image> image(constituents.size());
   double work = 0.0;
   for (std::size_t k = 0; k < constituents.size(); ++k) {
-    const auto p = static_cast<std::size_t>(constituents[k]);
+    const auto p = index(constituents[k]);
     place_constituent(b, pose, k, box, position[k], image[k]);
     for (int c = 0; c < D; ++c)
       if (!box.is_periodic(c) && (position[k][c] < 0.0 || position[k][c] > box.size[c]))
@@ -128,7 +128,7 @@ bool MonteCarlo<D>::try_body(Dynamics<D>& dynamics, std::size_t body, const Coun
   if (!(change <= 0.0 || turn.back() < std::exp(-change / dynamics.constants().kT))) return false;
   energy_->accept();
   for (std::size_t k = 0; k < constituents.size(); ++k) {
-    const auto p = static_cast<std::size_t>(constituents[k]);
+    const auto p = index(constituents[k]);
     particles.position[p] = position[k];
     particles.image[p] = image[k];
   }
@@ -142,15 +142,15 @@ void MonteCarlo<D>::sweep(Dynamics<D>& dynamics, std::int64_t step) {
   const Particles<D>& particles = dynamics.particles();
   const CounterRandom random(dynamics.settings().seed, Stream::monte_carlo);
   energy_->place();
-  for (const std::int32_t index : particles.index_of_id()) {
-    const auto i = static_cast<std::size_t>(index);
+  for (const std::int32_t row : particles.index_of_id()) {
+    const auto i = index(row);
     if (!particles.is_free(i)) continue;
     const auto u = random.uniforms(static_cast<std::uint64_t>(step), 0,
                                    static_cast<std::uint64_t>(particles.id[i]), 0);
     ++trials_;
     if (try_move(dynamics, i, u)) ++accepted_;
   }
-  for (std::size_t b = 0; b < static_cast<std::size_t>(dynamics.dofs().bodies()); ++b) {
+  for (std::size_t b = 0; b < index(dynamics.dofs().bodies()); ++b) {
     ++trials_;
     if (try_body(dynamics, b, random, step)) ++accepted_;
   }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 
 namespace odpd {
@@ -15,7 +16,7 @@ namespace {
 
 // Particles that one thread takes at a time.
 constexpr std::int64_t range = 1024;
-std::size_t ranges(std::int64_t n) { return static_cast<std::size_t>((n + range - 1) / range); }
+std::size_t ranges(std::int64_t n) { return index((n + range - 1) / range); }
 
 }  // namespace
 
@@ -34,12 +35,12 @@ void Motion<D>::locate(std::span<const Vec<D>> positions, double time, Stage<D>&
   stage.velocity.resize(positions.size());
   std::vector<char> lost(ranges(n), 0);
   parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+    for (auto i = index(begin); i < index(end); ++i) {
       stage.position[i] = positions[i];
       stage.velocity[i] = particles_.is_known(i) && particles_.body_of(i) < 0
                               ? surroundings_.known_velocity(particles_.group[i], time)
                               : Vec<D>{};
-      if (!finite(positions[i])) lost[static_cast<std::size_t>(begin / range)] = 1;
+      if (!finite(positions[i])) lost[index(begin / range)] = 1;
     }
   });
   if (std::count(lost.begin(), lost.end(), 1) > 0)
@@ -68,9 +69,9 @@ void Motion<D>::check_paths(const std::vector<Vec<D>>& velocity, double dt) cons
   std::vector<char> found(ranges(n), 0);
   parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
     bool any = false;
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+    for (auto i = index(begin); i < index(end); ++i)
       for (int c = 0; c < D; ++c) any = any || too_far(i, c);
-    found[static_cast<std::size_t>(begin / range)] = any ? 1 : 0;
+    found[index(begin / range)] = any ? 1 : 0;
   });
   if (std::count(found.begin(), found.end(), 1) == 0) return;
   for (std::size_t i = 0; i < velocity.size(); ++i)
@@ -91,11 +92,10 @@ std::vector<Vec<D>> Motion<D>::displaced(const std::vector<Vec<D>>& velocity, do
   std::vector<Vec<D>> r = particles_.position;
   std::vector<std::int64_t> caught(ranges(n), 0);
   parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+    for (auto i = index(begin); i < index(end); ++i) {
       r[i] += dt * velocity[i];
       if (!box_.shear) box_.wrap(r[i]);
-      if (particles_.is_free(i) && surroundings_.confine(r[i]))
-        ++caught[static_cast<std::size_t>(begin / range)];
+      if (particles_.is_free(i) && surroundings_.confine(r[i])) ++caught[index(begin / range)];
     }
   });
   for (const std::int64_t count : caught) crossings += count;
@@ -118,19 +118,19 @@ std::int64_t Motion<D>::move(const std::vector<Vec<D>>& velocity, double dt, dou
   const auto n = static_cast<std::int64_t>(velocity.size());
   std::vector<std::int64_t> caught(ranges(n), 0);
   parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+    for (auto i = index(begin); i < index(end); ++i) {
       particles_.position[i] += dt * velocity[i];
       particles_.velocity[i] = velocity[i];
       box.wrap(particles_.position[i], particles_.image[i]);
       if (particles_.is_free(i) && surroundings_.confine(particles_.position[i]))
-        ++caught[static_cast<std::size_t>(begin / range)];
+        ++caught[index(begin / range)];
     }
   });
   for (const std::size_t b : moved) {
     place(b, particles_.bodies[b].pose, box, particles_.position, &particles_.image);
     // The mirror does not turn bodies back: a constituent outside the box is an alarm.
     for (const std::int32_t p : dofs().constituents(b)) {
-      Vec<D> r = particles_.position[static_cast<std::size_t>(p)];
+      Vec<D> r = particles_.position[index(p)];
       if (surroundings_.confine(r)) ++caught.front();
     }
   }
@@ -153,8 +153,7 @@ auto Motion<D>::times_inertia(const Stage<D>& stage, const Unknowns& q, double i
 
 template <int D>
 auto Motion<D>::end_velocity(const Stage<D>& stage) -> Unknowns {
-  if (particles_.end_velocity.empty())
-    return Unknowns(static_cast<std::size_t>(dofs().unknowns()), 0.0);
+  if (particles_.end_velocity.empty()) return Unknowns(index(dofs().unknowns()), 0.0);
   Unknowns q;
   dofs().gather(stage.arms, particles_.end_velocity, q);
   dofs().divide_by_inertia(stage.arms, q);

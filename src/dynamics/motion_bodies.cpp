@@ -1,6 +1,7 @@
 // The parts of Motion that know rigid bodies: their arms, known motion, and motion along velocities of constituents.
 #include <cmath>
 
+#include "odpd/core/index.h"
 #include "odpd/dynamics/motion.h"
 
 namespace odpd {
@@ -11,12 +12,10 @@ std::vector<Vec<D>> Motion<D>::arms_at(const Box<D>& box, std::span<const Vec<D>
   for (std::size_t b = 0; b < particles_.bodies.size(); ++b) {
     const auto constituents = dofs().constituents(b);
     points.clear();
-    for (const std::int32_t p : constituents)
-      points.push_back(positions[static_cast<std::size_t>(p)]);
+    for (const std::int32_t p : constituents) points.push_back(positions[index(p)]);
     own.resize(points.size());
     find_arms<D>(box, points, own);
-    for (std::size_t k = 0; k < own.size(); ++k)
-      arms[static_cast<std::size_t>(constituents[k])] = own[k];
+    for (std::size_t k = 0; k < own.size(); ++k) arms[index(constituents[k])] = own[k];
   }
   return arms;
 }
@@ -29,7 +28,7 @@ void Motion<D>::place_arms(Stage<D>& stage) {
     if (!particles_.bodies[b].known) continue;
     const RigidMotion<D> motion = surroundings_.known_motion(b, stage.time);
     for (const std::int32_t particle : dofs().constituents(b)) {
-      const auto p = static_cast<std::size_t>(particle);
+      const auto p = index(particle);
       stage.velocity[p] = motion.velocity + swing(motion.angular, stage.arms[p]);
     }
   }
@@ -40,7 +39,7 @@ template <int D>
 void Motion<D>::count_boxes(std::size_t body, Stage<D>& stage) {
   const int up = box_.shear->gradient;
   for (const std::int32_t particle : dofs().constituents(body)) {
-    const auto p = static_cast<std::size_t>(particle);
+    const auto p = index(particle);
     const double whole = particles_.bodies[body].pose.centre[up] + stage.arms[p][up];
     stage.crossed[p] =
         static_cast<std::int32_t>(std::lround((whole - stage.position[p][up]) / box_.size[up]));
@@ -55,7 +54,7 @@ bool Motion<D>::advance(std::size_t body, const std::vector<Vec<D>>& velocity, d
   bool moves = false;
   for (std::size_t k = 0; k < frame.size(); ++k) {
     arms.push_back(pose.orientation.turn(frame[k]));
-    velocities.push_back(velocity[static_cast<std::size_t>(dofs().constituents(body)[k])]);
+    velocities.push_back(velocity[index(dofs().constituents(body)[k])]);
     moves = moves || velocities.back() != Vec<D>{};
   }
   if (moves) pose.advance(rigid_motion<D>(arms, velocities), dt, box);
@@ -70,7 +69,7 @@ void Motion<D>::place(std::size_t body, const RigidPose<D>& pose, const Box<D>& 
   typename Particles<D>::Image unused;
   const auto constituents = dofs().constituents(body);
   for (std::size_t k = 0; k < constituents.size(); ++k) {
-    const auto p = static_cast<std::size_t>(constituents[k]);
+    const auto p = index(constituents[k]);
     place_constituent(particles_.bodies[body], pose, k, box, positions[p],
                       images == nullptr ? unused : (*images)[p]);
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/core/index.h"
 #include "odpd/operator/edge_sums.h"
 
 namespace odpd {
@@ -77,14 +78,13 @@ const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   const std::vector<double> v_before = v;
 
   PhaseTimer timer(dynamics.phases(), Phase::solve);
-  std::vector<std::array<double, static_cast<std::size_t>(D * D)>> blocks(
-      record.start.position.size());
+  std::vector<std::array<double, index(D * D)>> blocks(record.start.position.size());
   add_friction_blocks<D>(record.start.network, blocks);
   using Matrix = Eigen::Matrix<double, D, D>;
   using Vector = typename Particle<D>::Vector;
   std::vector<double> q_mid(v.size());
-  for (std::size_t n = 0; n < static_cast<std::size_t>(dynamics.dofs().nodes()); ++n) {
-    const auto i = static_cast<std::size_t>(dynamics.dofs().particle_of(n));
+  for (std::size_t n = 0; n < index(dynamics.dofs().nodes()); ++n) {
+    const auto i = index(dynamics.dofs().particle_of(n));
     const Matrix a = Eigen::Map<const Matrix>(blocks[i].data()) + zeta_0 * Matrix::Identity();
     const auto at = [&](const std::vector<double>& u) {
       return Eigen::Map<const Vector>(&u[n * D]);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/pairs/noise.h"
 
@@ -15,7 +16,7 @@ namespace {
 std::size_t lowest_free(const std::vector<std::uint64_t>& a, const std::vector<std::uint64_t>& b) {
   for (std::size_t word = 0;; ++word) {
     const std::uint64_t taken = (word < a.size() ? a[word] : 0) | (word < b.size() ? b[word] : 0);
-    if (~taken != 0) return 64 * word + static_cast<std::size_t>(std::countr_one(taken));
+    if (~taken != 0) return 64 * word + index(std::countr_one(taken));
   }
 }
 
@@ -39,7 +40,7 @@ void EdgeColours::assign(std::span<const std::int32_t> i, std::span<const std::i
   std::vector<std::size_t> colour(i.size());
   std::size_t most = 0;
   for (std::size_t k = 0; k < i.size(); ++k) {
-    const auto p = static_cast<std::size_t>(i[k]), q = static_cast<std::size_t>(j[k]);
+    const auto p = index(i[k]), q = index(j[k]);
     colour[k] = lowest_free(free[p] ? taken[p] : none, free[q] ? taken[q] : none);
     if (free[p]) insert(taken[p], colour[k]);
     if (free[q]) insert(taken[q], colour[k]);
@@ -76,12 +77,11 @@ void Shardlow<D>::exchange(Dynamics<D>& dynamics, const Clock& clock,
   colours_.assign(network.i, network.j, free);
   const std::vector<Vec<D>>& start = this->record_.start.velocity;
   std::vector<Vec<D>>& edge_force = this->record_.edge_noise;
-  edge_force.resize(static_cast<std::size_t>(network.size()));
+  edge_force.resize(index(network.size()));
   const PairRandom random(dynamics.settings().seed, static_cast<std::uint64_t>(clock.step));
   const bool thermal = dynamics.model().thermal();
   const auto pass = [&](std::size_t k) {
-    const auto i = static_cast<std::size_t>(network.i[k]),
-               j = static_cast<std::size_t>(network.j[k]);
+    const auto i = index(network.i[k]), j = index(network.j[k]);
     const Vec<D>& e = network.e[k];
     const double mu = free[i] && free[j] ? 0.5 * mass : mass;
     const EdgeNormals<D> w(random, network, particles, k);
@@ -104,9 +104,8 @@ void Shardlow<D>::exchange(Dynamics<D>& dynamics, const Clock& clock,
   };
   for (std::size_t colour = 0; colour < colours_.count(); ++colour) {
     const auto edges = colours_.edges(colour);
-    parallel_for(static_cast<std::int64_t>(edges.size()), [&](std::int64_t n) {
-      pass(static_cast<std::size_t>(edges[static_cast<std::size_t>(n)]));
-    });
+    parallel_for(static_cast<std::int64_t>(edges.size()),
+                 [&](std::int64_t n) { pass(index(edges[index(n)])); });
   }
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/geometry/pair_list.h"
 
@@ -27,8 +28,8 @@ void CellList<D>::choose_cells(double width, std::size_t particles) {
     width *= 1.25;
   } while (cells > most);
   for (int c = 0; c < D; ++c) {
-    count_[static_cast<std::size_t>(c)] = static_cast<std::int64_t>(count[c]);
-    per_length_[static_cast<std::size_t>(c)] = count[c] / box_.size[c];
+    count_[index(c)] = static_cast<std::int64_t>(count[c]);
+    per_length_[index(c)] = count[c] / box_.size[c];
   }
   cell_count_ = static_cast<std::int64_t>(cells);
 }
@@ -39,20 +40,19 @@ template <int D>
 void CellList<D>::assign(double width, std::span<const Vec<D>> positions) {
   choose_cells(width, positions.size());
   const auto n = static_cast<std::int64_t>(positions.size());
-  const auto cells = static_cast<std::size_t>(cell_count_);
+  const auto cells = index(cell_count_);
   const std::int64_t parts = n > 4096 ? threads() : 1;
   start_.resize(cells + 1);
   member_.resize(positions.size());
   cell_.resize(positions.size());
-  next_.resize(static_cast<std::size_t>(parts) * cells);
+  next_.resize(index(parts) * cells);
   const auto part = [&](std::int64_t k, const auto& visit) {
-    std::int32_t* const next = next_.data() + static_cast<std::size_t>(k) * cells;
-    for (std::int64_t i = k * n / parts; i < (k + 1) * n / parts; ++i)
-      visit(next, static_cast<std::size_t>(i));
+    std::int32_t* const next = next_.data() + index(k) * cells;
+    for (std::int64_t i = k * n / parts; i < (k + 1) * n / parts; ++i) visit(next, index(i));
   };
 #pragma omp parallel for schedule(static, 1) if (parts > 1)
   for (std::int64_t k = 0; k < parts; ++k) {
-    std::fill_n(next_.data() + static_cast<std::size_t>(k) * cells, cells, 0);
+    std::fill_n(next_.data() + index(k) * cells, cells, 0);
     part(k, [&](std::int32_t* count, std::size_t i) {
       cell_[i] = static_cast<std::int32_t>(cell_of(positions[i]));
       ++count[cell_[i]];
@@ -61,7 +61,7 @@ void CellList<D>::assign(double width, std::span<const Vec<D>> positions) {
   std::int32_t sum = 0;
   for (std::size_t cell = 0; cell < cells; ++cell) {
     start_[cell] = sum;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(parts); ++k) {
+    for (std::size_t k = 0; k < index(parts); ++k) {
       const std::int32_t count = next_[k * cells + cell];
       next_[k * cells + cell] = sum;
       sum += count;
@@ -71,7 +71,7 @@ void CellList<D>::assign(double width, std::span<const Vec<D>> positions) {
 #pragma omp parallel for schedule(static, 1) if (parts > 1)
   for (std::int64_t k = 0; k < parts; ++k)
     part(k, [&](std::int32_t* next, std::size_t i) {
-      member_[static_cast<std::size_t>(next[cell_[i]]++)] = static_cast<std::int32_t>(i);
+      member_[index(next[cell_[i]]++)] = static_cast<std::int32_t>(i);
     });
 }
 
@@ -79,8 +79,8 @@ template <int D>
 std::int64_t CellList<D>::cell_of(const Vec<D>& r) const {
   std::int64_t cell = 0;
   for (int c = D - 1; c >= 0; --c) {
-    const std::int64_t n = count_[static_cast<std::size_t>(c)];
-    const double x = r[c] * per_length_[static_cast<std::size_t>(c)];
+    const std::int64_t n = count_[index(c)];
+    const double x = r[c] * per_length_[index(c)];
     // Outside a bounded direction (or not a number): the border cell.
     const std::int64_t k =
         x > 0.0 ? static_cast<std::int64_t>(std::min(x, static_cast<double>(n - 1))) : 0;
@@ -91,8 +91,8 @@ std::int64_t CellList<D>::cell_of(const Vec<D>& r) const {
 
 template <int D>
 std::span<const std::int32_t> CellList<D>::members(std::int64_t cell) const {
-  const auto b = static_cast<std::size_t>(start_[static_cast<std::size_t>(cell)]);
-  const auto e = static_cast<std::size_t>(start_[static_cast<std::size_t>(cell) + 1]);
+  const auto b = index(start_[index(cell)]);
+  const auto e = index(start_[index(cell) + 1]);
   return std::span<const std::int32_t>(member_).subspan(b, e - b);
 }
 
@@ -101,7 +101,7 @@ void CellList<D>::neighbourhood(std::int64_t cell, std::vector<std::int64_t>& ou
   out.assign(1, 0);
   std::int64_t stride = 1;
   for (int c = 0; c < D; ++c) {
-    const std::int64_t n = count_[static_cast<std::size_t>(c)];
+    const std::int64_t n = count_[index(c)];
     const std::int64_t k = cell % n;
     cell /= n;
     std::array<std::int64_t, 3> line{k, k, k};
@@ -136,9 +136,8 @@ std::vector<std::int32_t> spatial_order(const Box<D>& box, double width,
     const auto members = cells.members(cell);
     const auto first = static_cast<std::ptrdiff_t>(order.size());
     order.insert(order.end(), members.begin(), members.end());
-    std::sort(order.begin() + first, order.end(), [&](std::int32_t a, std::int32_t b) {
-      return id[static_cast<std::size_t>(a)] < id[static_cast<std::size_t>(b)];
-    });
+    std::sort(order.begin() + first, order.end(),
+              [&](std::int32_t a, std::int32_t b) { return id[index(a)] < id[index(b)]; });
   }
   return order;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/isa.h"
 #include "odpd/core/parallel.h"
 #include "pair_search_kernels.h"
@@ -87,11 +88,11 @@ int candidate_runs(const CellList<D>& cells, const Box<D>& box, std::int64_t cel
       const std::int64_t here = lines[l].first + around[k].cell;
       const std::int32_t begin = cells.begin_of(here), end = cells.begin_of(here + 1);
       if (begin == end) continue;
-      auto* last = n_runs > before ? &runs[static_cast<std::size_t>(n_runs) - 1] : nullptr;
+      auto* last = n_runs > before ? &runs[index(n_runs) - 1] : nullptr;
       if (last != nullptr && last->end == begin && around[k].shift == last->shift[0]) {
         last->end = end;
       } else {
-        runs[static_cast<std::size_t>(n_runs++)] = {
+        runs[index(n_runs++)] = {
             begin, end, {around[k].shift, lines[l].shift[1], lines[l].shift[2]}};
       }
     }
@@ -124,9 +125,8 @@ void add_line(const SeenCell& from, std::int64_t first, std::int64_t last, std::
 template <int D>
 int candidate_runs_across(const CellList<D>& cells, const Box<D>& box, std::int64_t cell,
                           std::span<kernels::CandidateRun> runs) {
-  const auto flow = static_cast<std::size_t>(box.shear->flow),
-             gradient = static_cast<std::size_t>(box.shear->gradient);
-  std::array<std::int64_t, static_cast<std::size_t>(D)> place{}, stride{};
+  const auto flow = index(box.shear->flow), gradient = index(box.shear->gradient);
+  std::array<std::int64_t, index(D)> place{}, stride{};
   std::int64_t rest = cell, cells_before = 1;
   for (std::size_t c = 0; c < D; ++c) {
     place[c] = rest % cells.count()[c];
@@ -172,7 +172,7 @@ int candidate_runs_across(const CellList<D>& cells, const Box<D>& box, std::int6
 template <int D>
 bool at_sliding_face(const CellList<D>& cells, const Box<D>& box, std::int64_t cell) {
   if (!box.shear) return false;
-  const auto gradient = static_cast<std::size_t>(box.shear->gradient);
+  const auto gradient = index(box.shear->gradient);
   for (std::size_t c = 0; c < gradient; ++c) cell /= cells.count()[c];
   const std::int64_t k = cell % cells.count()[gradient];
   return k == 0 || k == cells.count()[gradient] - 1;
@@ -201,15 +201,15 @@ template <int D>
 double PairList<D>::largest_displacement(std::span<const Vec<D>> positions) const {
   constexpr std::int64_t block = 4096;
   const auto n = static_cast<std::int64_t>(positions.size());
-  std::vector<double> square(static_cast<std::size_t>((n + block - 1) / block));
+  std::vector<double> square(index((n + block - 1) / block));
   parallel_ranges(n, block, [&](std::int64_t begin, std::int64_t end) {
     double most = 0.0;
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+    for (auto i = index(begin); i < index(end); ++i) {
       const Vec<D> d = box_.separation(positions[i], reference_[i]);
       // A coordinate that is no number is infinitely far away.
       most = dot(d, d) <= most ? most : dot(d, d) > most ? dot(d, d) : HUGE_VAL;
     }
-    square[static_cast<std::size_t>(begin / block)] = most;
+    square[index(begin / block)] = most;
   });
   double most = 0.0;
   for (const double s : square) most = std::max(most, s);
@@ -243,8 +243,8 @@ void PairList<D>::sort_positions(std::span<const Vec<D>> positions) {
   for (auto& column : x_) column.resize(positions.size() + spare);
   index_.resize(positions.size() + spare);
   parallel_for(static_cast<std::int64_t>(positions.size()), [&](std::int64_t place) {
-    const auto k = static_cast<std::size_t>(place);
-    const auto i = static_cast<std::size_t>(sorted[k]);
+    const auto k = index(place);
+    const auto i = index(sorted[k]);
     for (std::size_t c = 0; c < D; ++c) x_[c][k] = positions[i].x[c];
     index_[k] = sorted[k];
   });
@@ -252,7 +252,7 @@ void PairList<D>::sort_positions(std::span<const Vec<D>> positions) {
 
 template <int D>
 void PairList<D>::search_cells(std::int64_t chunk, double reach) {
-  auto& found = found_[static_cast<std::size_t>(chunk)];
+  auto& found = found_[index(chunk)];
   kernels::SortedParticles particles{{}, index_.data()};
   for (std::size_t c = 0; c < D; ++c) particles.x[c] = x_[c].data();
   bool twice = false;
@@ -270,30 +270,29 @@ void PairList<D>::search_cells(std::int64_t chunk, double reach) {
                            ? candidate_runs_across<D>(cells_, box_, cell, runs)
                            : candidate_runs(cells_, box_, cell, runs);
     std::int64_t candidates = 0;
-    for (int r = 0; r < n_runs; ++r)
-      candidates += runs[static_cast<std::size_t>(r)].end - runs[static_cast<std::size_t>(r)].begin;
+    for (int r = 0; r < n_runs; ++r) candidates += runs[index(r)].end - runs[index(r)].begin;
     const auto batch =
         static_cast<std::int32_t>(std::clamp<std::int64_t>(65536 / candidates, 1, 64));
     for (std::int32_t k = cells_.begin_of(cell); k < last; k += batch) {
       const std::int32_t stop = std::min(last, k + batch);
-      const std::size_t room = used + static_cast<std::size_t>((stop - k) * candidates) + spare;
+      const std::size_t room = used + index((stop - k) * candidates) + spare;
       if (found.size() < room) found.resize(std::max(room, 3 * found.size() / 2));
       search(particles, k, stop, runs.data(), n_runs, reach * reach, !twice, found.data() + used,
              length.data());
       for (std::int32_t member = k; member < stop; ++member) {
-        const std::int32_t n = length[static_cast<std::size_t>(member - k)];
+        const std::int32_t n = length[index(member - k)];
         std::int32_t* const row = found.data() + used;
         if (twice || n > kernels::longest_sorted_row) std::sort(row, row + n);
         const auto different =
             twice ? static_cast<std::int32_t>(std::unique(row, row + n) - row) : n;
-        row_[static_cast<std::size_t>(index_[static_cast<std::size_t>(member)])] = {
-            static_cast<std::int32_t>(chunk), static_cast<std::int32_t>(used), different};
+        row_[index(index_[index(member)])] = {static_cast<std::int32_t>(chunk),
+                                              static_cast<std::int32_t>(used), different};
         pairs += different;
-        used += static_cast<std::size_t>(n);
+        used += index(n);
       }
     }
   }
-  found_pairs_[static_cast<std::size_t>(chunk)] = pairs;
+  found_pairs_[index(chunk)] = pairs;
 }
 
 template <int D>
@@ -304,9 +303,8 @@ void PairList<D>::rebuild(std::span<const Vec<D>> positions) {
   sort_positions(positions);
   row_.resize(positions.size());
   const std::int64_t chunks = (cells_.cells() + chunk_cells - 1) / chunk_cells;
-  if (found_.size() < static_cast<std::size_t>(chunks))
-    found_.resize(static_cast<std::size_t>(chunks));
-  found_pairs_.assign(static_cast<std::size_t>(chunks), 0);
+  if (found_.size() < index(chunks)) found_.resize(index(chunks));
+  found_pairs_.assign(index(chunks), 0);
 #pragma omp parallel for schedule(dynamic) if (threads() > 1)
   for (std::int64_t chunk = 0; chunk < chunks; ++chunk) search_cells(chunk, reach);
   pairs_ = 0;

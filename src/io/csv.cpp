@@ -12,6 +12,7 @@
 
 #include "descriptor.h"
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/io/file.h"
 
 namespace odpd {
@@ -139,7 +140,7 @@ void write_csv(const std::filesystem::path& file, const Table& table) {
 
 std::optional<std::size_t> TextTable::find(const std::string& name) const {
   const auto exact = std::find(columns.begin(), columns.end(), name);
-  if (exact != columns.end()) return static_cast<std::size_t>(exact - columns.begin());
+  if (exact != columns.end()) return index(exact - columns.begin());
   std::optional<std::size_t> found;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     if (lower_case(columns[k]) != lower_case(name)) continue;
@@ -227,7 +228,7 @@ SeriesFile::SeriesFile(const std::filesystem::path& file, const std::vector<std:
 SeriesFile::SeriesFile(const std::filesystem::path& file, std::int64_t bytes)
     : file_(file), bytes_(bytes) {
   check(file, bytes);
-  Descriptor(file_, O_WRONLY, file_).truncate(static_cast<std::size_t>(bytes));
+  Descriptor(file_, O_WRONLY, file_).truncate(index(bytes));
 }
 
 void SeriesFile::check(const std::filesystem::path& file, std::int64_t bytes) {
@@ -238,7 +239,7 @@ void SeriesFile::check(const std::filesystem::path& file, std::int64_t bytes) {
                     "continue into a new directory with --out",
                     file.string(), bytes));
   const Descriptor out(file, O_WRONLY, file);
-  if (out.size() < static_cast<std::size_t>(bytes))
+  if (out.size() < index(bytes))
     throw IoError(
         fmt::format("{}: has {} bytes where the checkpoint knows {}: it was cut or replaced since; "
                     "restore it, or continue into a new directory with --out",
@@ -251,7 +252,7 @@ void SeriesFile::flush(bool sync) {
   if (buffer_.empty() && !sync) return;
   Descriptor out(file_, O_WRONLY, file_);
   try {
-    out.write_at(buffer_.data(), buffer_.size(), static_cast<std::size_t>(bytes_));
+    out.write_at(buffer_.data(), buffer_.size(), index(bytes_));
     if (sync) out.sync();
     out.close();
   } catch (const IoError&) {

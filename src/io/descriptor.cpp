@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
@@ -96,14 +97,14 @@ void Descriptor::write_at(const char* data, std::size_t size, std::size_t offset
     });
     if (count < 0) fail_writing(file_, errno);
     if (count == 0) fail_writing(file_, ENOSPC);
-    done += static_cast<std::size_t>(count);
+    done += index(count);
   }
 }
 
 std::size_t Descriptor::size() const {
   struct stat status {};
   if (::fstat(number_, &status) != 0) fail_reading(file_, errno);
-  return static_cast<std::size_t>(status.st_size);
+  return index(status.st_size);
 }
 
 void Descriptor::truncate(std::size_t size) const {

@@ -9,6 +9,7 @@
 
 #include "descriptor.h"
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
@@ -66,7 +67,7 @@ std::string read_file(const fs::path& file) {
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) fail_reading(file, errno);
     if (count == 0) break;
-    done += static_cast<std::size_t>(count);
+    done += index(count);
     if (done == text.size()) text.resize(2 * text.size());
   }
   text.resize(done);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gnuplot_run.h"
+#include "odpd/core/index.h"
 #include "odpd/io/gnuplot.h"
 
 namespace odpd {

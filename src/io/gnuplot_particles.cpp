@@ -7,6 +7,7 @@
 
 #include "gnuplot_run.h"
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/io/gnuplot.h"
 
 namespace odpd {
@@ -24,8 +25,7 @@ struct Region {
 };
 
 double coordinate(const Frame& frame, std::size_t particle, int component) {
-  return frame.position[particle * static_cast<std::size_t>(frame.dimension) +
-                        static_cast<std::size_t>(component)];
+  return frame.position[particle * index(frame.dimension) + index(component)];
 }
 
 Region drawn_region(const Frame& frame) {
@@ -135,8 +135,7 @@ bool draw_particles(const std::filesystem::path& stem, const Frame& frame, int c
   std::string fluid, walls;
   std::vector<double> values;
   for (const std::size_t p : order) {
-    const std::size_t place =
-        p * static_cast<std::size_t>(frame.dimension) + static_cast<std::size_t>(component);
+    const std::size_t place = p * index(frame.dimension) + index(component);
     const double velocity = place < frame.velocity.size() ? frame.velocity[place] : 0.0;
     const bool wall = p < frame.group.size() && frame.group[p] != 0;
     if (!wall && !std::isfinite(velocity)) continue;

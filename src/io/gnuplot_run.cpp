@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/log.h"
 #include "odpd/io/file.h"
 
@@ -48,7 +49,7 @@ std::string read_pipe(int number) {
     const ssize_t count = ::read(number, buffer.data(), buffer.size());
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return text;
-    text.append(buffer.data(), static_cast<std::size_t>(count));
+    text.append(buffer.data(), index(count));
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "h5_handle.h"
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/io/file.h"
 #include "odpd/io/h5_file.h"
 
@@ -29,8 +30,7 @@ std::vector<hsize_t> extents(const std::vector<std::int64_t>& shape) {
 }
 
 std::size_t count(const std::vector<std::int64_t>& shape) {
-  return static_cast<std::size_t>(
-      std::accumulate(shape.begin(), shape.end(), std::int64_t{1}, std::multiplies<>()));
+  return index(std::accumulate(shape.begin(), shape.end(), std::int64_t{1}, std::multiplies<>()));
 }
 
 H5Handle simple_space(const std::vector<std::int64_t>& shape) {
@@ -86,7 +86,7 @@ void write_attribute(hid_t file, const std::string& path, const std::string& nam
 
 std::vector<hsize_t> dimensions(const H5Handle& dataset, const std::string& path) {
   const H5Handle space(check(H5Dget_space(dataset.id()), path), H5Sclose);
-  std::vector<hsize_t> dims(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.id())));
+  std::vector<hsize_t> dims(index(H5Sget_simple_extent_ndims(space.id())));
   H5Sget_simple_extent_dims(space.id(), dims.data(), nullptr);
   return dims;
 }
@@ -245,7 +245,7 @@ void H5Image::save(const std::filesystem::path& file) const {
   check(H5Fflush(impl_->file.id(), H5F_SCOPE_LOCAL), file.string());
   const ssize_t size = H5Fget_file_image(impl_->file.id(), nullptr, 0);
   check(size, file.string());
-  std::vector<std::byte> image(static_cast<std::size_t>(size));
+  std::vector<std::byte> image(index(size));
   check(H5Fget_file_image(impl_->file.id(), image.data(), image.size()), file.string());
   write_file_atomically(file, std::span<const std::byte>(image));
 }

@@ -7,6 +7,7 @@
 
 #include "h5_handle.h"
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/io/file.h"
 #include "odpd/io/h5_file.h"
 
@@ -15,21 +16,19 @@ namespace odpd {
 namespace {
 
 std::vector<hsize_t> extents(const H5Handle& space) {
-  std::vector<hsize_t> dims(
-      static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space.id()))));
+  std::vector<hsize_t> dims(index(std::max(0, H5Sget_simple_extent_ndims(space.id()))));
   H5Sget_simple_extent_dims(space.id(), dims.data(), nullptr);
   return dims;
 }
 
 std::size_t product(const std::vector<hsize_t>& dims) {
-  return static_cast<std::size_t>(
-      std::accumulate(dims.begin(), dims.end(), hsize_t{1}, std::multiplies<>()));
+  return index(std::accumulate(dims.begin(), dims.end(), hsize_t{1}, std::multiplies<>()));
 }
 
 /// Elements of fixed or variable length, read by `read(memory type, buffer) < 0` on failure.
 template <class Read>
 std::vector<std::string> read_texts(hid_t stored, const H5Handle& space, Read read) {
-  const auto number = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.id()));
+  const auto number = index(H5Sget_simple_extent_npoints(space.id()));
   std::vector<std::string> texts;
   if (number == 0) return texts;
   if (H5Tis_variable_str(stored) > 0) {
@@ -90,8 +89,7 @@ struct H5Reader::Impl {
   template <class T>
   std::vector<T> read_all(const std::string& path, const H5Handle& dataset, hid_t native) const {
     const H5Handle space(H5Dget_space(dataset.id()), H5Sclose);
-    std::vector<T> values(
-        static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.id()))));
+    std::vector<T> values(index(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space.id()))));
     if (!values.empty() &&
         H5Dread(dataset.id(), native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
       fail(path, fmt::format("cannot be read: {}", h5_reason()));

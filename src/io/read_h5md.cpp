@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/io/trajectory.h"
 
 namespace odpd {
@@ -79,7 +80,7 @@ class FrameReader {
     frame.step = std::llround(position.label("step"));
     frame.time = position.label("time");
     frame.position = position.doubles();
-    const auto count = static_cast<std::size_t>(shape[0]);
+    const auto count = index(shape[0]);
     const std::size_t flat = frame.position.size();
     frame.velocity = optional_doubles("velocity", flat);
     frame.image = optional_integers("image", flat);
@@ -122,7 +123,7 @@ class FrameReader {
   void read_box(Frame& frame) const {
     const Element edges = element("box/edges");
     if (!edges.exists() || edges.last() < 0) return;
-    const auto dimension = static_cast<std::size_t>(frame.dimension);
+    const auto dimension = index(frame.dimension);
     const auto values = edges.doubles();
     if (values.size() == dimension) {
       frame.box_size = values;
@@ -166,7 +167,7 @@ void sort_by_id(Frame& frame) {
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return frame.id[a] < frame.id[b]; });
-  const auto dimension = static_cast<std::size_t>(frame.dimension);
+  const auto dimension = index(frame.dimension);
   reorder(frame.id, order, 1);
   reorder(frame.species, order, 1);
   reorder(frame.group, order, 1);

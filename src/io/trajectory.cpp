@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/io/file.h"
 
 namespace odpd {
@@ -44,7 +45,7 @@ std::string author() {
 /// One after the other. A rectangular box has a matrix as well: H5MD allows a vector, which not every reader takes.
 std::vector<double> edge_vectors(const Frame& frame) {
   if (!frame.edges.empty()) return frame.edges;
-  const auto dimension = static_cast<std::size_t>(frame.dimension);
+  const auto dimension = index(frame.dimension);
   std::vector<double> edges(dimension * dimension, 0.0);
   for (std::size_t c = 0; c < dimension; ++c) edges[c * (dimension + 1)] = frame.box_size[c];
   return edges;

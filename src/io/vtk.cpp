@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "odpd/core/index.h"
 #include "odpd/io/file.h"
 
 namespace odpd {
@@ -88,7 +89,7 @@ bool is_frame_name(const std::string& name) {
 
 void write_vtp(const std::filesystem::path& file, const Frame& frame) {
   const std::size_t count = frame.id.size();
-  const auto dimension = static_cast<std::size_t>(frame.dimension);
+  const auto dimension = index(frame.dimension);
   Text text;
   put(text,
       "<?xml version=\"1.0\"?>\n"

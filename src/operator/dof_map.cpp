@@ -1,5 +1,7 @@
 #include "odpd/operator/dof_map.h"
 
+#include "odpd/core/index.h"
+
 namespace odpd {
 
 namespace {
@@ -13,14 +15,13 @@ std::span<const double> flat(std::span<const Vec<D>> v) {
 
 template <int D>
 DofMap<D>::DofMap(const Particles<D>& particles) {
-  const auto n = static_cast<std::size_t>(particles.size());
-  std::vector<std::int32_t> index;
+  const auto n = index(particles.size());
+  std::vector<std::int32_t> index_of;
   for (const RigidBody<D>& body : particles.bodies) {
     unknown_ += body.known ? 0 : 1;
-    if (index.empty()) index = particles.index_of_id();
+    if (index_of.empty()) index_of = particles.index_of_id();
     body_.emplace_back();
-    for (const std::int64_t id : body.members)
-      body_.back().push_back(index[static_cast<std::size_t>(id)]);
+    for (const std::int64_t id : body.members) body_.back().push_back(index_of[index(id)]);
   }
   std::vector<char> without(n);
   for (std::size_t i = 0; i < n; ++i) without[i] = particles.is_free(i) ? 0 : 1;
@@ -33,12 +34,12 @@ DofMap<D>::DofMap(const Particles<D>& particles) {
 template <int D>
 void DofMap<D>::gather(std::span<const Vec<D>> arms, std::span<const Vec<D>> forces,
                        std::vector<double>& q) const {
-  q.resize(static_cast<std::size_t>(unknowns()));
+  q.resize(index(unknowns()));
   free_.gather(flat(forces), std::span(q).subspan(free_node(0) * D));
   for (std::size_t b = 0; b < unknown_; ++b) {
     Vec<D> force{}, moment{};
     for (const std::int32_t particle : body_[b]) {
-      const auto p = static_cast<std::size_t>(particle);
+      const auto p = index(particle);
       force += forces[p];
       moment += torque(arms[p], forces[p]);
     }
@@ -62,7 +63,7 @@ void DofMap<D>::scatter(std::span<const Vec<D>> arms, std::span<const double> q,
       w.x[c] = q[b * D + c];
     }
     for (const std::int32_t particle : body_[b]) {
-      const auto p = static_cast<std::size_t>(particle);
+      const auto p = index(particle);
       velocity[p] = v + swing(w, arms[p]);
     }
   }
@@ -73,8 +74,7 @@ void DofMap<D>::divide_by_inertia(std::span<const Vec<D>> arms, std::vector<doub
   std::vector<Vec<D>> own;
   for (std::size_t b = 0; b < unknown_; ++b) {
     own.clear();
-    for (const std::int32_t particle : body_[b])
-      own.push_back(arms[static_cast<std::size_t>(particle)]);
+    for (const std::int32_t particle : body_[b]) own.push_back(arms[index(particle)]);
     double* const linear = &l[body_node(b) * D];
     double* const angular = &l[b * D];
     Vec<D> moment;

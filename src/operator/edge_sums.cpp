@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/pairs/edge_loop.h"
 
@@ -13,10 +14,10 @@ namespace {
 template <int D, class Value, class Sum>
 void add_bonds(const PairNetwork<D>& network, bool opposite, const Value& value,
                std::vector<Sum>& sum) {
-  for (auto k = static_cast<std::size_t>(network.pairs()); k < network.i.size(); ++k) {
+  for (auto k = index(network.pairs()); k < network.i.size(); ++k) {
     const Sum v = value(k);
-    sum[static_cast<std::size_t>(network.i[k])] += v;
-    Sum& other = sum[static_cast<std::size_t>(network.j[k])];
+    sum[index(network.i[k])] += v;
+    Sum& other = sum[index(network.j[k])];
     if (opposite) {
       other -= v;
     } else {
@@ -31,9 +32,9 @@ void add_edges(const PairNetwork<D>& network, bool opposite, const Value& value,
                std::vector<Sum>& sum) {
   if (network.first.empty()) {
     parallel_for(network.particles, [&](std::int64_t particle) {
-      Sum& s = sum[static_cast<std::size_t>(particle)];
+      Sum& s = sum[index(particle)];
       for (const std::int32_t edge : network.edges_of(particle)) {
-        const auto k = static_cast<std::size_t>(edge);
+        const auto k = index(edge);
         if (opposite && network.i[k] != particle) {
           s -= value(k);
         } else {
@@ -62,8 +63,7 @@ void add_edges(const PairNetwork<D>& network, bool opposite, const Value& value,
 
 template <int D>
 Vec<D> slip_of(const PairNetwork<D>& network, std::size_t k, std::span<const Vec<D>> velocity) {
-  return velocity[static_cast<std::size_t>(network.i[k])] -
-         velocity[static_cast<std::size_t>(network.j[k])];
+  return velocity[index(network.i[k])] - velocity[index(network.j[k])];
 }
 
 // Force on i of the stiffness of edge k.
@@ -87,7 +87,7 @@ void add_conservative_forces(const PairNetwork<D>& network, std::vector<Vec<D>>&
   add_edges(
       network, true, [&](std::size_t k) { return network.f_c[k] * network.e[k]; }, force);
   if (network.beyond.empty()) return;
-  const auto first_bond = static_cast<std::size_t>(network.pairs());
+  const auto first_bond = index(network.pairs());
   add_bonds(
       network, true, [&](std::size_t k) { return network.beyond[k - first_bond].force; }, force);
 }
@@ -113,11 +113,10 @@ void add_known_friction(const PairNetwork<D>& network, std::span<const std::int3
                         std::span<const Vec<D>> velocity, std::vector<Vec<D>>& force) {
   for (const std::int32_t p : known)
     for (const std::int32_t edge : network.edges_of(p)) {
-      const auto k = static_cast<std::size_t>(edge);
+      const auto k = index(edge);
       const double sign = network.i[k] == p ? -1.0 : 1.0;
       const std::int32_t other = network.i[k] == p ? network.j[k] : network.i[k];
-      force[static_cast<std::size_t>(other)] +=
-          sign * friction_of(network, k, slip_of(network, k, velocity));
+      force[index(other)] += sign * friction_of(network, k, slip_of(network, k, velocity));
     }
 }
 
@@ -137,11 +136,11 @@ void add_bond_springs(const PairNetwork<D>& network, std::span<const Vec<D>> vel
 
 template <int D>
 void add_friction_blocks(const PairNetwork<D>& network,
-                         std::vector<std::array<double, static_cast<std::size_t>(D* D)>>& blocks) {
+                         std::vector<std::array<double, index(D* D)>>& blocks) {
   parallel_for(network.particles, [&](std::int64_t particle) {
-    auto& block = blocks[static_cast<std::size_t>(particle)];
+    auto& block = blocks[index(particle)];
     for (const std::int32_t edge : network.edges_of(particle)) {
-      const auto k = static_cast<std::size_t>(edge);
+      const auto k = index(edge);
       const double along = network.zeta_par[k] - network.zeta_perp[k];
       for (std::size_t row = 0; row < D; ++row)
         for (std::size_t col = 0; col < D; ++col)
@@ -156,14 +155,14 @@ void add_laplacian(const PairNetwork<D>& network, std::vector<double>& laplacian
   // At r = 0 the Laplacian of a pair that repels is infinite. Such an edge is left out: coincident
   // particles have measure zero, and one must not make an average infinite for good.
   const auto share = [&](std::size_t k) {
-    const bool acts = network.f_c[k] != 0.0 || k >= static_cast<std::size_t>(network.pairs());
+    const bool acts = network.f_c[k] != 0.0 || k >= index(network.pairs());
     return acts && network.r[k] > 0.0 ? network.k_c[k] - (D - 1) * network.f_c[k] / network.r[k]
                                       : 0.0;
   };
   add_edges(network, false, share, laplacian);
   add_density_curvature(network, laplacian);
   if (network.beyond.empty()) return;
-  const auto first_bond = static_cast<std::size_t>(network.pairs());
+  const auto first_bond = index(network.pairs());
   add_bonds(
       network, false, [&](std::size_t k) { return network.beyond[k - first_bond].curvature; },
       laplacian);
@@ -174,14 +173,14 @@ void add_density_curvature(const PairNetwork<D>& network, std::vector<double>& l
   const DensityColumns& columns = network.densities;
   if (columns.empty()) return;
   parallel_for(network.particles, [&](std::int64_t particle) {
-    const auto p = static_cast<std::size_t>(particle);
+    const auto p = index(particle);
     double sum = 0.0;
     Vec<D> gradient{};
     for (const std::int32_t edge : network.edges_of(particle)) {
       if (edge >= network.pairs()) break;  // bonds are the last
-      const auto k = static_cast<std::size_t>(edge);
+      const auto k = index(edge);
       const bool first = network.i[k] == particle;
-      const auto q = static_cast<std::size_t>(first ? network.j[k] : network.i[k]);
+      const auto q = index(first ? network.j[k] : network.i[k]);
       sum += columns.psi_2[q] * columns.W_1[k] * columns.W_1[k];
       gradient += (first ? columns.W_1[k] : -columns.W_1[k]) * network.e[k];
     }
@@ -189,22 +188,22 @@ void add_density_curvature(const PairNetwork<D>& network, std::vector<double>& l
   });
 }
 
-#define ODPD_INSTANTIATE(D)                                                                      \
-  template void add_edge_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,               \
-                                   std::vector<Vec<D>>&);                                        \
-  template void add_conservative_forces<D>(const PairNetwork<D>&, std::vector<Vec<D>>&);         \
-  template void add_friction_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,           \
-                                       std::vector<Vec<D>>&);                                    \
-  template void add_sliding_friction<D>(const PairNetwork<D>&, std::vector<Vec<D>>&);            \
-  template void add_known_friction<D>(const PairNetwork<D>&, std::span<const std::int32_t>,      \
-                                      std::span<const Vec<D>>, std::vector<Vec<D>>&);            \
-  template void add_spring_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,             \
-                                     std::vector<Vec<D>>&);                                      \
-  template void add_bond_springs<D>(const PairNetwork<D>&, std::span<const Vec<D>>,              \
-                                    std::vector<Vec<D>>&);                                       \
-  template void add_friction_blocks<D>(                                                          \
-      const PairNetwork<D>&, std::vector<std::array<double, static_cast<std::size_t>(D * D)>>&); \
-  template void add_laplacian<D>(const PairNetwork<D>&, std::vector<double>&);                   \
+#define ODPD_INSTANTIATE(D)                                                                 \
+  template void add_edge_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,          \
+                                   std::vector<Vec<D>>&);                                   \
+  template void add_conservative_forces<D>(const PairNetwork<D>&, std::vector<Vec<D>>&);    \
+  template void add_friction_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,      \
+                                       std::vector<Vec<D>>&);                               \
+  template void add_sliding_friction<D>(const PairNetwork<D>&, std::vector<Vec<D>>&);       \
+  template void add_known_friction<D>(const PairNetwork<D>&, std::span<const std::int32_t>, \
+                                      std::span<const Vec<D>>, std::vector<Vec<D>>&);       \
+  template void add_spring_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,        \
+                                     std::vector<Vec<D>>&);                                 \
+  template void add_bond_springs<D>(const PairNetwork<D>&, std::span<const Vec<D>>,         \
+                                    std::vector<Vec<D>>&);                                  \
+  template void add_friction_blocks<D>(const PairNetwork<D>&,                               \
+                                       std::vector<std::array<double, index(D* D)>>&);      \
+  template void add_laplacian<D>(const PairNetwork<D>&, std::vector<double>&);              \
   template void add_density_curvature<D>(const PairNetwork<D>&, std::vector<double>&);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)

@@ -1,5 +1,6 @@
 #include "odpd/operator/node_map.h"
 
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 
 namespace odpd {
@@ -13,19 +14,19 @@ NodeMap::NodeMap(std::span<const char> known, int block_size) : block_(block_siz
 }
 
 void NodeMap::gather(std::span<const double> values, std::span<double> q) const {
-  const auto b = static_cast<std::size_t>(block_);
+  const auto b = index(block_);
   parallel_for(nodes(), [&](std::int64_t node) {
-    const auto n = static_cast<std::size_t>(node);
-    const auto p = static_cast<std::size_t>(particle_[n]);
+    const auto n = index(node);
+    const auto p = index(particle_[n]);
     for (std::size_t c = 0; c < b; ++c) q[n * b + c] = values[p * b + c];
   });
 }
 
 void NodeMap::scatter(std::span<const double> q, std::span<double> values) const {
-  const auto b = static_cast<std::size_t>(block_);
+  const auto b = index(block_);
   parallel_for(nodes(), [&](std::int64_t node) {
-    const auto n = static_cast<std::size_t>(node);
-    const auto p = static_cast<std::size_t>(particle_[n]);
+    const auto n = index(node);
+    const auto p = index(particle_[n]);
     for (std::size_t c = 0; c < b; ++c) values[p * b + c] = q[n * b + c];
   });
 }

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/core/room.h"
 
@@ -18,7 +19,7 @@ namespace {
 template <int D>
 Vec<D> load(std::span<const double> x, std::size_t node) {
   Vec<D> v;
-  for (int c = 0; c < D; ++c) v[c] = x[node * D + static_cast<std::size_t>(c)];
+  for (int c = 0; c < D; ++c) v[c] = x[node * D + index(c)];
   return v;
 }
 
@@ -44,8 +45,8 @@ double relative_determinant(const double* block) {
 
 template <int D>
 std::size_t other_end(const PairNetwork<D>& network, std::int32_t edge, std::int32_t particle) {
-  const auto k = static_cast<std::size_t>(edge);
-  return static_cast<std::size_t>(network.i[k] == particle ? network.j[k] : network.i[k]);
+  const auto k = index(edge);
+  return index(network.i[k] == particle ? network.j[k] : network.i[k]);
 }
 
 }  // namespace
@@ -59,20 +60,19 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
   stiffness_time_ = stiffness_time;
   bond_time_ = bond_time;
   ++generation_;
-  const auto n_nodes = static_cast<std::size_t>(nodes_);
+  const auto n_nodes = index(nodes_);
   weigh_edges(network);
   count_links(network, dofs);
-  resize_afresh(links_, static_cast<std::size_t>(start_.back()));
+  resize_afresh(links_, index(start_.back()));
   const bool anchored = shift != 0.0 || dofs.sites() < dofs.particles();
   anchor_.assign(anchored ? n_nodes : 0, Block{});
   diagonal_.resize(n_nodes);
   parent_.resize(n_nodes);
   positions_.resize(n_nodes * D);
   parallel_for(nodes_, [&](std::int64_t node) {
-    const auto n = static_cast<std::size_t>(node);
+    const auto n = index(node);
     const std::int32_t particle = dofs.particle_of(n);
-    for (std::size_t c = 0; c < D; ++c)
-      positions_[n * D + c] = positions[static_cast<std::size_t>(particle)].x[c];
+    for (std::size_t c = 0; c < D; ++c) positions_[n * D + c] = positions[index(particle)].x[c];
     fill_row(n, particle, network, dofs);
   });
   translations_are_null_ = std::all_of(anchor_.begin(), anchor_.end(), [](const Block& block) {
@@ -90,11 +90,11 @@ void Resistance<D>::weigh_edges(const PairNetwork<D>& network) {
   const std::int64_t pairs = network.pairs();
   // Edges before it take no part of their stiffness.
   const std::int64_t stiff_from = stiffness_time_ != 0.0 ? 0 : pairs;
-  const auto edges = static_cast<std::size_t>(network.size());
+  const auto edges = index(network.size());
   resize_afresh(g_, edges);
   resize_afresh(across_, transverse ? edges : 0);
   parallel_for(network.size(), [&](std::int64_t edge) {
-    const auto k = static_cast<std::size_t>(edge);
+    const auto k = index(edge);
     double along = network.zeta_par[k];
     if (edge >= stiff_from)
       along += (edge < pairs ? stiffness_time_ : bond_time_) * std::max(network.k_c[k], 0.0);
@@ -112,9 +112,9 @@ void Resistance<D>::count_links(const PairNetwork<D>& network, const DofMap<D>& 
     start_.assign(network.start.begin(), network.start.end());
     return;
   }
-  start_.assign(static_cast<std::size_t>(nodes_) + 1, 0);
+  start_.assign(index(nodes_) + 1, 0);
   parallel_for(nodes_, [&](std::int64_t node) {
-    const auto n = static_cast<std::size_t>(node);
+    const auto n = index(node);
     const std::int32_t particle = dofs.particle_of(n);
     for (const std::int32_t edge : network.edges_of(particle))
       if (dofs.site_of(other_end(network, edge, particle)) >= 0) ++start_[n + 1];
@@ -129,7 +129,7 @@ void Resistance<D>::fill_row(std::size_t node, std::int32_t particle, const Pair
   Link* link = links_.data() + start_[node];
   auto parent = static_cast<std::int32_t>(node);
   for (const std::int32_t edge : network.edges_of(particle)) {
-    const auto k = static_cast<std::size_t>(edge);
+    const auto k = index(edge);
     const std::int32_t partner = dofs.site_of(other_end(network, edge, particle));
     Block& sum = partner >= 0 ? free : known;
     Vec<D> g = g_[k];
@@ -147,7 +147,7 @@ void Resistance<D>::fill_row(std::size_t node, std::int32_t particle, const Pair
     if (partner < parent && ties(*link)) parent = partner;
     ++link;
   }
-  parent_[static_cast<std::size_t>(node)] = parent;
+  parent_[index(node)] = parent;
   for (std::size_t c = 0; c < D; ++c) known[c * D + c] += shift_;
   Block& diagonal = diagonal_[node];
   for (std::size_t row = 0; row < D; ++row)
@@ -166,14 +166,13 @@ void Resistance<D>::check_rattlers(const PairNetwork<D>& network, const DofMap<D
   constexpr double singular = 1e-12;
   std::atomic<std::int64_t> first{nodes_};
   parallel_for(nodes_, [&](std::int64_t node) {
-    const auto n = static_cast<std::size_t>(node);
+    const auto n = index(node);
     if (relative_determinant<D>(diagonal_[n].data()) > singular) return;
-    if (!particles.is_free(static_cast<std::size_t>(dofs.particle_of(n))))
-      return;  // held by its body
+    if (!particles.is_free(index(dofs.particle_of(n)))) return;  // held by its body
     lower(first, node);
   });
   if (first < nodes_) {
-    const auto n = static_cast<std::size_t>(first.load());
+    const auto n = index(first.load());
     const std::int32_t particle = dofs.particle_of(n);
     throw SolverError(
         fmt::format(
@@ -184,7 +183,7 @@ void Resistance<D>::check_rattlers(const PairNetwork<D>& network, const DofMap<D
             "(fluid.rattler_friction = {{ gamma = 0.1, cutoff = 2.0 }}), a higher density, or a "
             "larger "
             "cutoff",
-            particles.id[static_cast<std::size_t>(particle)], network.edges_of(particle).size()),
+            particles.id[index(particle)], network.edges_of(particle).size()),
         SolverError::Cause::singular);
   }
 }
@@ -194,19 +193,19 @@ void Resistance<D>::check_rattlers(const PairNetwork<D>& network, const DofMap<D
 // one, and the links of those nearly always join it.
 template <int D>
 void Resistance<D>::check_clusters(const DofMap<D>& dofs, const Particles<D>& particles) {
-  const auto n_nodes = static_cast<std::size_t>(nodes_);
+  const auto n_nodes = index(nodes_);
   std::vector<std::int32_t>& parent = parent_;
   std::vector<std::size_t> roots;
   for (std::size_t n = 0; n < n_nodes; ++n) {
     auto& up = parent[n];
     if (up == static_cast<std::int32_t>(n)) roots.push_back(n);
-    up = parent[static_cast<std::size_t>(up)];  // lower nodes point to their roots already
+    up = parent[index(up)];  // lower nodes point to their roots already
   }
   std::size_t groups = roots.size();
   const auto root = [&](std::int32_t n) {
-    while (parent[static_cast<std::size_t>(n)] != n) {
-      auto& up = parent[static_cast<std::size_t>(n)];
-      up = parent[static_cast<std::size_t>(up)];
+    while (parent[index(n)] != n) {
+      auto& up = parent[index(n)];
+      up = parent[index(up)];
       n = up;
     }
     return n;
@@ -214,35 +213,33 @@ void Resistance<D>::check_clusters(const DofMap<D>& dofs, const Particles<D>& pa
   const auto unite = [&](std::int32_t m, std::int32_t n) {
     const std::int32_t a = root(m), b = root(n);
     if (a == b) return;
-    parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    parent[index(std::max(a, b))] = std::min(a, b);
     --groups;
   };
   const auto join = [&](std::size_t n) {
     for (const Link& link : links(n))
       if (ties(link)) unite(static_cast<std::int32_t>(n), link.node);
   };
-  for (std::size_t b = 0; b < static_cast<std::size_t>(dofs.bodies()); ++b)
+  for (std::size_t b = 0; b < index(dofs.bodies()); ++b)
     for (const std::int32_t particle : dofs.constituents(b))
-      unite(dofs.site_of(static_cast<std::size_t>(dofs.constituents(b)[0])),
-            dofs.site_of(static_cast<std::size_t>(particle)));
+      unite(dofs.site_of(index(dofs.constituents(b)[0])), dofs.site_of(index(particle)));
   for (const std::size_t n : roots) join(n);
   if (groups <= 1) return;  // held, or the null space
   for (std::size_t n = 0; n < n_nodes && groups > 1; ++n) join(n);
   std::vector<bool> held(n_nodes, false);
   for (std::size_t n = 0; n < anchor_.size(); ++n)
-    if (anchor_[n] != Block{})
-      held[static_cast<std::size_t>(root(static_cast<std::int32_t>(n)))] = true;
+    if (anchor_[n] != Block{}) held[index(root(static_cast<std::int32_t>(n)))] = true;
   // Without any known velocity the first group carries the null space, and there may be no second.
-  if (translations_are_null_ && n_nodes > 0) held[static_cast<std::size_t>(root(0))] = true;
+  if (translations_are_null_ && n_nodes > 0) held[index(root(0))] = true;
   for (std::size_t n = 0; n < n_nodes; ++n) {
-    if (held[static_cast<std::size_t>(root(static_cast<std::int32_t>(n)))]) continue;
+    if (held[index(root(static_cast<std::int32_t>(n)))]) continue;
     throw SolverError(
         fmt::format("particle {} belongs to a group of particles out of reach of all others, which "
                     "can move freely as one, so R is "
                     "singular. Cures: a weak pairwise friction of longer range "
                     "(fluid.rattler_friction = {{ gamma = 0.1, cutoff = "
                     "2.0 }}), a higher density, or a larger cutoff",
-                    particles.id[static_cast<std::size_t>(dofs.particle_of(n))]),
+                    particles.id[index(dofs.particle_of(n))]),
         SolverError::Cause::singular);
   }
 }
@@ -266,7 +263,7 @@ Vec<D> Resistance<D>::row_product(std::size_t node, std::span<const double> x) c
       for (std::size_t col = 0; col < D; ++col)
         sum.x[row] += anchor_[node][row * D + col] * own.x[col];
   for (const Link& link : links(node)) {
-    const Vec<D> slip = own - load<D>(x, static_cast<std::size_t>(link.node));
+    const Vec<D> slip = own - load<D>(x, index(link.node));
     if constexpr (transverse) {
       sum += pull(link, slip);
     } else {
@@ -280,7 +277,7 @@ template <int D>
 void Resistance<D>::apply(std::span<const double> x, std::span<double> y) const {
   const bool transverse = !across_.empty();
   parallel_for(nodes_, [&](std::int64_t node) {
-    const auto n = static_cast<std::size_t>(node);
+    const auto n = index(node);
     const Vec<D> sum = transverse ? row_product<true>(n, x) : row_product<false>(n, x);
     for (std::size_t c = 0; c < D; ++c) y[n * D + c] = sum.x[c];
   });
@@ -289,7 +286,7 @@ void Resistance<D>::apply(std::span<const double> x, std::span<double> y) const 
 template <int D>
 void Resistance<D>::block_diagonal(std::span<double> blocks) const {
   parallel_for(nodes_, [&](std::int64_t node) {
-    const auto n = static_cast<std::size_t>(node);
+    const auto n = index(node);
     std::copy(diagonal_[n].begin(), diagonal_[n].end(), &blocks[n * D * D]);
   });
 }
@@ -300,9 +297,9 @@ const BlockCsr& Resistance<D>::matrix() const {
   BlockCsr m;
   m.block = D;
   m.rows = static_cast<std::int32_t>(nodes_);
-  m.start.assign(static_cast<std::size_t>(nodes_) + 1, 0);
+  m.start.assign(index(nodes_) + 1, 0);
   std::vector<Link> row;
-  for (std::size_t n = 0; n < static_cast<std::size_t>(nodes_); ++n) {
+  for (std::size_t n = 0; n < index(nodes_); ++n) {
     row.assign(links(n).begin(), links(n).end());
     std::stable_sort(row.begin(), row.end(),
                      [](const Link& a, const Link& b) { return a.node < b.node; });

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "odpd/core/index.h"
+
 namespace odpd {
 
 namespace {
@@ -31,32 +33,30 @@ void RigidResistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>&
   dofs_ = dofs.bodies() > 0 ? &dofs : nullptr;
   if (dofs_ == nullptr) return;
   arms_.assign(arms.begin(), arms.end());
-  node_.resize(static_cast<std::size_t>(dofs.sites()));
+  node_.resize(index(dofs.sites()));
   auto node = static_cast<std::int32_t>(dofs.free_node(0));
   for (std::size_t s = 0; s < node_.size(); ++s) {
-    const auto p = static_cast<std::size_t>(dofs.particle_of(s));
+    const auto p = index(dofs.particle_of(s));
     node_[s] = particles.is_free(p) ? node++ : -particles.body_of(p) - 1;
   }
 }
 
 template <int D>
 void RigidResistance<D>::apply(std::span<const double> x, std::span<double> y) const {
-  const auto n = static_cast<std::size_t>(dofs_->sites());
+  const auto n = index(dofs_->sites());
   // Through vectors per particle: few of a scene's particles are known.
   std::vector<Vec<D>> velocity, force(arms_.size());
   dofs_->scatter(arms_, x, force, velocity);
   std::vector<double> v(n * D), f(n * D);
   for (std::size_t s = 0; s < n; ++s)
-    for (std::size_t c = 0; c < D; ++c)
-      v[s * D + c] = velocity[static_cast<std::size_t>(dofs_->particle_of(s))].x[c];
+    for (std::size_t c = 0; c < D; ++c) v[s * D + c] = velocity[index(dofs_->particle_of(s))].x[c];
   sites_.apply(v, f);
   for (std::size_t s = 0; s < n; ++s)
-    for (std::size_t c = 0; c < D; ++c)
-      force[static_cast<std::size_t>(dofs_->particle_of(s))].x[c] = f[s * D + c];
+    for (std::size_t c = 0; c < D; ++c) force[index(dofs_->particle_of(s))].x[c] = f[s * D + c];
   std::vector<double> q;
   dofs_->gather(arms_, force, q);
   std::copy(q.begin(), q.end(), y.begin());
-  for (std::size_t w = 0; w < static_cast<std::size_t>(dofs_->bodies()); ++w)
+  for (std::size_t w = 0; w < index(dofs_->bodies()); ++w)
     for (std::size_t c = rotation_components<D>; c < D; ++c) y[w * D + c] = x[w * D + c];
 }
 
@@ -64,9 +64,9 @@ template <int D>
 auto RigidResistance<D>::movers(std::size_t site) const -> std::vector<Mover> {
   typename Resistance<D>::Block unit{}, turn{};
   for (std::size_t c = 0; c < D; ++c) unit[c * D + c] = 1.0;
-  if (node_[site] >= 0) return {{static_cast<std::size_t>(node_[site]), unit}};
-  const auto body = static_cast<std::size_t>(-node_[site] - 1);
-  const Vec<D>& arm = arms_[static_cast<std::size_t>(dofs_->particle_of(site))];
+  if (node_[site] >= 0) return {{index(node_[site]), unit}};
+  const auto body = index(-node_[site] - 1);
+  const Vec<D>& arm = arms_[index(dofs_->particle_of(site))];
   for (std::size_t c = 0; c < D; ++c) {
     Vec<D> w{};
     w.x[c] = 1.0;
@@ -78,7 +78,7 @@ auto RigidResistance<D>::movers(std::size_t site) const -> std::vector<Mover> {
 
 template <int D>
 void RigidResistance<D>::add_unused(std::size_t node, double* block) const {
-  if (node >= static_cast<std::size_t>(dofs_->bodies())) return;
+  if (node >= index(dofs_->bodies())) return;
   for (std::size_t c = rotation_components<D>; c < D; ++c) block[c * D + c] += 1.0;
 }
 
@@ -90,21 +90,19 @@ void RigidResistance<D>::block_diagonal(std::span<double> blocks) const {
     for (const Mover& m : movers(s))
       add_triple_product<D>(m.map.data(), sites_.diagonal()[s].data(), m.map.data(),
                             &blocks[m.node * D * D]);
-  for (std::size_t n = 0; n < static_cast<std::size_t>(nodes()); ++n)
-    add_unused(n, &blocks[n * D * D]);
+  for (std::size_t n = 0; n < index(nodes()); ++n) add_unused(n, &blocks[n * D * D]);
 }
 
 template <int D>
 const BlockCsr& RigidResistance<D>::matrix() const {
   if (matrix_generation_ == generation()) return matrix_;
   const BlockCsr& inner = sites_.matrix();
-  const auto n = static_cast<std::size_t>(nodes());
+  const auto n = index(nodes());
   std::vector<std::map<std::int32_t, typename Resistance<D>::Block>> rows(n);
   for (std::size_t s = 0; s < node_.size(); ++s)
-    for (auto k = static_cast<std::size_t>(inner.start[s]);
-         k < static_cast<std::size_t>(inner.start[s + 1]); ++k)
+    for (auto k = index(inner.start[s]); k < index(inner.start[s + 1]); ++k)
       for (const Mover& left : movers(s))
-        for (const Mover& right : movers(static_cast<std::size_t>(inner.column[k])))
+        for (const Mover& right : movers(index(inner.column[k])))
           add_triple_product<D>(left.map.data(), &inner.value[k * D * D], right.map.data(),
                                 rows[left.node][static_cast<std::int32_t>(right.node)].data());
   BlockCsr m;

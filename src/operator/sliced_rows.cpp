@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "odpd/core/index.h"
 #include "odpd/core/isa.h"
 #include "odpd/core/parallel.h"
 #include "sliced_kernels.h"
@@ -36,7 +37,7 @@ void FloatArray::resize(std::int64_t size) {
   capacity_ = size + size / 16;
   data_.reset();
   data_.reset(static_cast<float*>(
-      ::operator new[](static_cast<std::size_t>(capacity_) * sizeof(float), std::align_val_t{64})));
+      ::operator new[](index(capacity_) * sizeof(float), std::align_val_t{64})));
 }
 
 void FloatArray::fill(float value) { std::fill_n(data_.get(), size_, value); }
@@ -59,9 +60,9 @@ void SlicedRows<D>::pack(const Resistance<D>& resistance) {
   const std::int64_t nodes = resistance.nodes();
   const std::int64_t slices = (nodes + slice_rows - 1) / slice_rows;
   across_ = resistance.transverse();
-  node_of_place_.resize(static_cast<std::size_t>(slices * slice_rows));
-  place_of_node_.resize(static_cast<std::size_t>(nodes));
-  start_.resize(static_cast<std::size_t>(slices) + 1);
+  node_of_place_.resize(index(slices * slice_rows));
+  place_of_node_.resize(index(nodes));
+  start_.resize(index(slices) + 1);
   start_[0] = 0;
   parallel_blocks((nodes + window_rows - 1) / window_rows,
                   [&](std::int64_t window) { sort_window(resistance, window); });
@@ -77,46 +78,44 @@ void SlicedRows<D>::sort_window(const Resistance<D>& resistance, std::int64_t wi
   const std::int64_t first = window * window_rows;
   const std::int64_t last = std::min(first + window_rows, resistance.nodes());
   const auto degree = [&](std::int64_t node) {
-    return std::min(resistance.links(static_cast<std::size_t>(node)).size(), most_counted);
+    return std::min(resistance.links(index(node)).size(), most_counted);
   };
   std::array<std::int32_t, most_counted + 2> begin{};
   for (std::int64_t node = first; node < last; ++node) ++begin[most_counted - degree(node) + 1];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   for (std::int64_t node = first; node < last; ++node) {
     const std::int64_t place = first + begin[most_counted - degree(node)]++;
-    node_of_place_[static_cast<std::size_t>(place)] = static_cast<std::int32_t>(node);
-    place_of_node_[static_cast<std::size_t>(node)] = static_cast<std::int32_t>(place);
+    node_of_place_[index(place)] = static_cast<std::int32_t>(node);
+    place_of_node_[index(node)] = static_cast<std::int32_t>(place);
   }
   for (std::int64_t slice = first / slice_rows; slice * slice_rows < last; ++slice) {
     std::size_t longest = 0;
     for (std::int64_t place = slice * slice_rows; place < (slice + 1) * slice_rows; ++place) {
-      auto& node = node_of_place_[static_cast<std::size_t>(place)];
+      auto& node = node_of_place_[index(place)];
       if (place >= last)
         node = -1;
       else
-        longest = std::max(longest, resistance.links(static_cast<std::size_t>(node)).size());
+        longest = std::max(longest, resistance.links(index(node)).size());
     }
-    start_[static_cast<std::size_t>(slice) + 1] = static_cast<std::int64_t>(longest);
+    start_[index(slice) + 1] = static_cast<std::int64_t>(longest);
   }
 }
 
 template <int D>
 void SlicedRows<D>::fill_slice(const Resistance<D>& resistance, std::int64_t slice) {
   const std::int64_t slot_floats = slice_rows * (1 + D + (across_ ? 1 : 0));
-  float* const out = links_.data() + start_[static_cast<std::size_t>(slice)] * slot_floats;
-  const std::int64_t slots =
-      start_[static_cast<std::size_t>(slice) + 1] - start_[static_cast<std::size_t>(slice)];
+  float* const out = links_.data() + start_[index(slice)] * slot_floats;
+  const std::int64_t slots = start_[index(slice) + 1] - start_[index(slice)];
   for (std::int64_t lane = 0; lane < slice_rows; ++lane) {
     const std::int64_t place = slice * slice_rows + lane;
-    const std::int32_t node = node_of_place_[static_cast<std::size_t>(place)];
+    const std::int32_t node = node_of_place_[index(place)];
     float* slot = out + lane;
     std::int64_t filled = 0;
     if (node >= 0) {
-      for (const auto& link : resistance.links(static_cast<std::size_t>(node))) {
-        slot[0] = as_float_bits(place_of_node_[static_cast<std::size_t>(link.node)] * stride);
+      for (const auto& link : resistance.links(index(node))) {
+        slot[0] = as_float_bits(place_of_node_[index(link.node)] * stride);
         for (std::int64_t c = 0; c < D; ++c)
-          slot[(1 + c) * slice_rows] =
-              static_cast<float>(resistance.g(link).x[static_cast<std::size_t>(c)]);
+          slot[(1 + c) * slice_rows] = static_cast<float>(resistance.g(link).x[index(c)]);
         if (across_) {
           const auto& a = resistance.across(link);
           slot[(1 + D) * slice_rows] =
@@ -134,10 +133,8 @@ void SlicedRows<D>::fill_slice(const Resistance<D>& resistance, std::int64_t sli
     float* anchor = anchor_.data() + slice * slice_rows * triangle<D> + lane;
     for (std::size_t row = 0; row < D; ++row)
       for (std::size_t col = row; col < D; ++col, anchor += slice_rows)
-        *anchor = node < 0
-                      ? 0.0F
-                      : static_cast<float>(
-                            resistance.anchors()[static_cast<std::size_t>(node)][row * D + col]);
+        *anchor =
+            node < 0 ? 0.0F : static_cast<float>(resistance.anchors()[index(node)][row * D + col]);
   }
 }
 

@@ -6,13 +6,12 @@
 #include <utility>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 
 namespace odpd {
 
 namespace {
-
-std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 void require(bool good, const char* what) {
   if (!good) throw SolverError(fmt::format("assembled matrix: {}", what));

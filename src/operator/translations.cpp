@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 
 namespace odpd {
@@ -14,7 +15,7 @@ constexpr std::int64_t nodes_per_sum = 1024;
 
 std::vector<double> Translations::sums(std::span<const double> x) const {
   const std::span<const double> part = x.subspan(in_front(x.size()));
-  std::vector<double> sum(static_cast<std::size_t>(components), 0.0);
+  std::vector<double> sum(index(components), 0.0);
   for (std::int64_t n = 0; n < nodes; ++n)
     for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += part[first(n) + c];
   return sum;
@@ -30,12 +31,12 @@ void Translations::add(std::span<const double> a, std::span<double> x) const {
 void Translations::remove_mean(std::span<double> x) const {
   if (nodes == 0) return;
   const std::span<double> part = x.subspan(in_front(x.size()));
-  const auto count = static_cast<std::size_t>(components);
+  const auto count = index(components);
   // Sums in fixed blocks of nodes, whatever the threads, as fixed_sum does.
   const std::int64_t blocks = (nodes + nodes_per_sum - 1) / nodes_per_sum;
-  std::vector<double> partial(static_cast<std::size_t>(blocks) * count, 0.0);
+  std::vector<double> partial(index(blocks) * count, 0.0);
   parallel_for(blocks, [&](std::int64_t s) {
-    double* const sum = &partial[static_cast<std::size_t>(s) * count];
+    double* const sum = &partial[index(s) * count];
     const std::int64_t end = std::min(nodes, (s + 1) * nodes_per_sum);
     for (std::int64_t n = s * nodes_per_sum; n < end; ++n)
       for (std::size_t c = 0; c < count; ++c) sum[c] += part[first(n) + c];

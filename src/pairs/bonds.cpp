@@ -9,6 +9,7 @@
 #include <set>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/pairs/edge_writer.h"
 
 namespace odpd {
@@ -77,28 +78,26 @@ BondedModel<D>::BondedModel(std::shared_ptr<const PairModel<D>> pairs, std::vect
     last = std::max({last, bond.i, bond.j});
     excludes_ = excludes_ || bond.p.exclude != BondExclusion::none;
   }
-  start_.assign(static_cast<std::size_t>(last + 2), 0);
+  start_.assign(index(last + 2), 0);
   for (const Bond& bond : bonds_)
-    for (const std::int64_t id : {bond.i, bond.j}) ++start_[static_cast<std::size_t>(id) + 1];
+    for (const std::int64_t id : {bond.i, bond.j}) ++start_[index(id) + 1];
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
   bond_of_.resize(start_.back());
   std::vector<std::size_t> place(start_.begin(), start_.end() - 1);
   for (std::size_t k = 0; k < bonds_.size(); ++k)
-    for (const std::int64_t id : {bonds_[k].i, bonds_[k].j})
-      bond_of_[place[static_cast<std::size_t>(id)]++] = k;
+    for (const std::int64_t id : {bonds_[k].i, bonds_[k].j}) bond_of_[place[index(id)]++] = k;
 }
 
 // Memory changes its order every so many steps; that of every single identity tells whether it did.
 template <int D>
 std::size_t BondedModel<D>::place_of(std::int64_t id, const Particles<D>& particles) const {
-  const auto at = static_cast<std::size_t>(id);
+  const auto at = index(id);
   if (at >= particles.id.size())
     throw ConfigError(fmt::format("a bond names particle {}, but there are {} particles", id,
                                   particles.id.size()));
-  if (index_.size() != particles.id.size() ||
-      particles.id[static_cast<std::size_t>(index_[at])] != id)
+  if (index_.size() != particles.id.size() || particles.id[index(index_[at])] != id)
     index_ = particles.index_of_id();
-  return static_cast<std::size_t>(index_[at]);
+  return index(index_[at]);
 }
 
 template <int D>
@@ -112,14 +111,13 @@ void BondedModel<D>::write_edges(const PairList<D>& list, const Box<D>& box,
   network.resize(pairs + static_cast<std::int64_t>(bonds_.size()));
   const double half_box = longest_bond(box);
   for (std::size_t k = 0; k < bonds_.size(); ++k)
-    write_bond(bonds_[k], half_box, box, positions, particles, static_cast<std::size_t>(pairs) + k,
-               network);
+    write_bond(bonds_[k], half_box, box, positions, particles, index(pairs) + k, network);
   network.index_bonds(static_cast<std::int64_t>(bonds_.size()));
   if (frames_.empty()) return;
   network.beyond.assign(bonds_.size(), {});
   for (const SiteFrame<D>& frame : frames_)
-    write_frame<D>(frame, places_of(frame, box, positions, particles),
-                   static_cast<std::size_t>(pairs) + frame.bond, network);
+    write_frame<D>(frame, places_of(frame, box, positions, particles), index(pairs) + frame.bond,
+                   network);
 }
 
 // Each next to the first of them: bonds are shorter than half the box.
@@ -177,7 +175,7 @@ PairTerms BondedModel<D>::of_densities(const Particles<D>& particles, const Pair
                                        std::size_t k) const {
   const DensityColumns& columns = network.densities;
   if (columns.empty()) return {};
-  const auto i = static_cast<std::size_t>(network.i[k]), j = static_cast<std::size_t>(network.j[k]);
+  const auto i = index(network.i[k]), j = index(network.j[k]);
   const double slope = columns.psi_1[i] + columns.psi_1[j];
   const Derivatives w =
       densities()->weight(network.r[k], site_of(particles, i), site_of(particles, j));
@@ -194,7 +192,7 @@ void BondedModel<D>::exclude(const Particles<D>& particles, PairNetwork<D>& netw
     const auto end = network.j.begin() + network.first[low + 1];
     const auto at = std::lower_bound(begin, end, static_cast<std::int32_t>(high));
     if (at == end || *at != static_cast<std::int32_t>(high)) continue;
-    const auto k = static_cast<std::size_t>(at - network.j.begin());
+    const auto k = index(at - network.j.begin());
     network.u.set(k, 0.0);
     const PairTerms rest = of_densities(particles, network, k);
     network.f_c[k] = rest.f_c;
@@ -208,7 +206,7 @@ void BondedModel<D>::exclude(const Particles<D>& particles, PairNetwork<D>& netw
 template <int D>
 double BondedModel<D>::bonded_energy(std::size_t i, const Vec<D>& r, const Box<D>& box,
                                      const Particles<D>& particles) const {
-  const auto id = static_cast<std::size_t>(particles.id[i]);
+  const auto id = index(particles.id[i]);
   if (id + 1 >= start_.size()) return 0.0;
   const double half_box = longest_bond(box);
   double energy = 0.0;
@@ -233,7 +231,7 @@ double BondedModel<D>::frame_energy(std::int64_t id, const Vec<D>& r, const Box<
       [](std::int64_t wanted, const SiteFrame<D>& frame) { return wanted < frame.first; });
   if (after == frames_.begin()) return 0.0;
   const SiteFrame<D>& frame = *(after - 1);
-  const auto at = static_cast<std::size_t>(id - frame.first);
+  const auto at = index(id - frame.first);
   if (at >= frame.sites.size()) return 0.0;
   std::vector<Vec<D>> places = places_of(frame, box, particles.position, particles);
   if (at > 0) {

@@ -6,6 +6,7 @@
 
 #include "edge_kernels.h"
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/isa.h"
 #include "odpd/pairs/edge_writer.h"
 
@@ -38,7 +39,7 @@ void validate(std::size_t species, const std::vector<DpdParameters>& table) {
 template <int D>
 DpdModel<D>::DpdModel(int species, std::vector<DpdParameters> parameters, DpdFluid fluid)
     : species_(species), fluid_(std::move(fluid)) {
-  validate(static_cast<std::size_t>(species), parameters);
+  validate(index(species), parameters);
   for (const DpdParameters& p : parameters) {
     table_.push_back({p, PowerWeight(p.s_bar), PowerWeight(p.s_bar + 1.0), Friction(p.friction())});
     cutoff_ = std::max({cutoff_, p.cutoff, p.friction().reach()});

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "edge_kernels.h"
+#include "odpd/core/index.h"
 #include "odpd/core/isa.h"
 #include "odpd/core/parallel.h"
 #include "odpd/pairs/density_writer.h"
@@ -14,7 +15,7 @@ namespace odpd {
 namespace {
 
 constexpr std::int64_t rows_per_block = 64;
-constexpr auto block = static_cast<std::size_t>(kernels::edge_block);
+constexpr auto block = index(kernels::edge_block);
 
 // Differences of positions of some pairs, and their squares.
 template <int D>
@@ -36,8 +37,8 @@ struct Differences {
   }
   // The offset of what is seen across a sliding face, before Box::separation's other steps.
   void slide(const Box<D>& box) {
-    double* const along = d[static_cast<std::size_t>(box.shear->flow)];
-    const double* const across = d[static_cast<std::size_t>(box.shear->gradient)];
+    double* const along = d[index(box.shear->flow)];
+    const double* const across = d[index(box.shear->gradient)];
     const double half = 0.5 * box.size[box.shear->gradient];
     for (std::size_t k = 0; k < size; ++k)
       along[k] -= across[k] > half ? box.offset : across[k] < -half ? -box.offset : 0.0;
@@ -70,7 +71,7 @@ class Writer {
           box.periodic[c] ? 0.5 * box.size.x[c] : std::numeric_limits<double>::infinity();
     }
     network_.particles = list.rows();
-    network_.first.resize(static_cast<std::size_t>(list.rows()) + 1);
+    network_.first.resize(index(list.rows()) + 1);
     network_.densities.resize(0, 0);
   }
 
@@ -84,8 +85,7 @@ class Writer {
       find_contacts();
       write_rows([&](std::int64_t p) {
         return std::span<const std::int32_t>(network_.scratch)
-            .subspan(static_cast<std::size_t>(candidates_[static_cast<std::size_t>(p)]),
-                     static_cast<std::size_t>(contacts_[static_cast<std::size_t>(p)]));
+            .subspan(index(candidates_[index(p)]), index(contacts_[index(p)]));
       });
     }
     if (wanted_ == Pairs::moving) network_.index_rows();
@@ -94,17 +94,16 @@ class Writer {
  private:
   // Wanted partners closer than the cutoff, to `scratch` where the list's row begins in it.
   void find_contacts() {
-    const auto n = static_cast<std::size_t>(list_.rows());
+    const auto n = index(list_.rows());
     candidates_.assign(n + 1, 0);
     contacts_.assign(n, 0);
     for (std::size_t p = 0; p < n; ++p)
       candidates_[p + 1] = candidates_[p] + static_cast<std::int64_t>(candidates_of(p).size());
-    if (network_.scratch.size() < static_cast<std::size_t>(candidates_.back()))
-      network_.scratch.resize(static_cast<std::size_t>(candidates_.back()));
+    if (network_.scratch.size() < index(candidates_.back()))
+      network_.scratch.resize(index(candidates_.back()));
     parallel_ranges(list_.rows(), rows_per_block, [&](std::int64_t begin, std::int64_t end) {
       Differences<D> pairs;
-      for (std::int64_t p = begin; p < end; ++p)
-        find_contacts_of(static_cast<std::size_t>(p), pairs);
+      for (std::int64_t p = begin; p < end; ++p) find_contacts_of(index(p), pairs);
     });
   }
 
@@ -121,13 +120,12 @@ class Writer {
     for (std::size_t k = 0; k < partners.size(); k += block) {
       const auto some = partners.subspan(k, std::min(block, partners.size() - k));
       pairs.size = 0;
-      for (const std::int32_t q : some)
-        pairs.add(positions_[p], positions_[static_cast<std::size_t>(q)]);
+      for (const std::int32_t q : some) pairs.add(positions_[p], positions_[index(q)]);
       pairs.close(kernel_, images_, box_);
       for (std::size_t l = 0; l < some.size(); ++l) {
         // Two of known velocity, or inside a body, do not move.
         const std::int32_t a = particles_.group[p];
-        const std::int32_t b = particles_.group[static_cast<std::size_t>(some[l])];
+        const std::int32_t b = particles_.group[index(some[l])];
         const bool moves = a > 0 ? b <= 0 : a == 0 || a != b;
         *out = some[l];  // never beyond the row: as many were read
         if (moves == moving && pairs.square[l] < reach2_) ++out;
@@ -139,7 +137,7 @@ class Writer {
   // Writes all edges, given the partners of each particle. False when some are not closer than the cutoff.
   template <class Partners>
   bool write_rows(const Partners& partners) {
-    const auto n = static_cast<std::size_t>(list_.rows());
+    const auto n = index(list_.rows());
     network_.first[0] = 0;
     for (std::size_t p = 0; p < n; ++p)
       network_.first[p + 1] =
@@ -149,15 +147,14 @@ class Writer {
     outside_.assign((n + rows_per_block - 1) / rows_per_block, 0);
     parallel_ranges(list_.rows(), rows_per_block, [&](std::int64_t begin, std::int64_t end) {
       Differences<D> pairs;
-      auto done = static_cast<std::size_t>(network_.first[static_cast<std::size_t>(begin)]);
-      int& outside = outside_[static_cast<std::size_t>(begin / rows_per_block)];
+      auto done = index(network_.first[index(begin)]);
+      int& outside = outside_[index(begin / rows_per_block)];
       for (std::int64_t p = begin; p < end; ++p)
         for (const std::int32_t q : partners(p)) {
           const std::size_t k = done + pairs.size;
           network_.i[k] = static_cast<std::int32_t>(p);
           network_.j[k] = q;
-          pairs.add(positions_[static_cast<std::size_t>(p)],
-                    positions_[static_cast<std::size_t>(q)]);
+          pairs.add(positions_[index(p)], positions_[index(q)]);
           if (pairs.size == block) outside += flush(pairs, done);
         }
       if (pairs.size > 0) outside += flush(pairs, done);
@@ -175,9 +172,8 @@ class Writer {
     const std::size_t end = done + pairs.size;
     for (std::size_t k = done; overlaps > 0 && k < end; ++k)
       if (network_.r[k] == 0.0)
-        network_.e[k] =
-            overlap_direction<D>(particles_.id[static_cast<std::size_t>(network_.i[k])],
-                                 particles_.id[static_cast<std::size_t>(network_.j[k])]);
+        network_.e[k] = overlap_direction<D>(particles_.id[index(network_.i[k])],
+                                             particles_.id[index(network_.j[k])]);
     fill_(network_, done, end);
     done = end;
     pairs.size = 0;

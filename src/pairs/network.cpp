@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/core/room.h"
 #include "odpd/pairs/edge_loop.h"
@@ -35,7 +36,7 @@ double PairNetwork<D>::energy() const {
 
 template <int D>
 void PairNetwork<D>::resize(std::int64_t edges) {
-  const auto n = static_cast<std::size_t>(edges);
+  const auto n = index(edges);
   bonds = 0;
   beyond.clear();
   resize_with_room(i, n);
@@ -50,23 +51,22 @@ void PairNetwork<D>::resize(std::int64_t edges) {
 template <int D>
 void PairNetwork<D>::index_edges() {
   first.clear();
-  start.assign(static_cast<std::size_t>(particles) + 1, 0);
+  start.assign(index(particles) + 1, 0);
   for (std::size_t k = 0; k < i.size(); ++k) {
-    ++start[static_cast<std::size_t>(i[k]) + 1];
-    ++start[static_cast<std::size_t>(j[k]) + 1];
+    ++start[index(i[k]) + 1];
+    ++start[index(j[k]) + 1];
   }
   std::partial_sum(start.begin(), start.end(), start.begin());
   edge.resize(2 * i.size());
   std::vector<std::int64_t> place(start.begin(), start.end() - 1);
   for (std::size_t k = 0; k < i.size(); ++k)
     for (const std::int32_t p : {i[k], j[k]})
-      edge[static_cast<std::size_t>(place[static_cast<std::size_t>(p)]++)] =
-          static_cast<std::int32_t>(k);
+      edge[index(place[index(p)]++)] = static_cast<std::int32_t>(k);
 }
 
 template <int D>
 void PairNetwork<D>::index_rows() {
-  const auto n = static_cast<std::size_t>(particles);
+  const auto n = index(particles);
   next.assign(n, 0);
   for_each_owned_edge(
       *this, [&](std::size_t p, std::size_t) { ++next[p]; },
@@ -80,9 +80,7 @@ void PairNetwork<D>::index_rows() {
   resize_afresh(edge, 2 * i.size());
   for_each_owned_edge(
       *this,
-      [&](std::size_t p, std::size_t k) {
-        edge[static_cast<std::size_t>(next[p]++)] = static_cast<std::int32_t>(k);
-      },
+      [&](std::size_t p, std::size_t k) { edge[index(next[p]++)] = static_cast<std::int32_t>(k); },
       [&](std::size_t p, std::size_t begin, std::size_t) {
         std::iota(edge.begin() + next[p], edge.begin() + start[p + 1],
                   static_cast<std::int32_t>(begin));
@@ -92,10 +90,10 @@ void PairNetwork<D>::index_rows() {
 template <int D>
 void PairNetwork<D>::index_bonds(std::int64_t count) {
   bonds = count;
-  const auto n = static_cast<std::size_t>(particles);
+  const auto n = index(particles);
   next.assign(n, 0);
-  for (auto k = static_cast<std::size_t>(pairs()); k < i.size(); ++k)
-    for (const std::int32_t p : {i[k], j[k]}) ++next[static_cast<std::size_t>(p)];
+  for (auto k = index(pairs()); k < i.size(); ++k)
+    for (const std::int32_t p : {i[k], j[k]}) ++next[index(p)];
   edge.resize(2 * i.size());
   // From the end on, each particle's edges move up by the bonds of those before it.
   std::int64_t shift = 2 * count;
@@ -107,10 +105,9 @@ void PairNetwork<D>::index_bonds(std::int64_t count) {
       std::copy_backward(edge.begin() + begin, edge.begin() + end, edge.begin() + end + shift);
     next[p] = static_cast<std::int32_t>(end + shift);
   }
-  for (auto k = static_cast<std::size_t>(pairs()); k < i.size(); ++k)
+  for (auto k = index(pairs()); k < i.size(); ++k)
     for (const std::int32_t p : {i[k], j[k]})
-      edge[static_cast<std::size_t>(next[static_cast<std::size_t>(p)]++)] =
-          static_cast<std::int32_t>(k);
+      edge[index(next[index(p)]++)] = static_cast<std::int32_t>(k);
 }
 
 template <int D>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/core/random.h"
 #include "odpd/core/room.h"
@@ -14,7 +15,7 @@ namespace {
 template <int D>
 Vec<D> across_line(const Vec<D>& e, double sign, const std::array<double, 4>& w) {
   Vec<D> n;
-  for (int c = 0; c < D; ++c) n[c] = sign * w[static_cast<std::size_t>(c)];
+  for (int c = 0; c < D; ++c) n[c] = sign * w[index(c)];
   return n - dot(n, e) * e;
 }
 
@@ -29,12 +30,10 @@ struct PairBlock {
 
   PairBlock(const PairNetwork<D>& network, const Particles<D>& particles, std::int64_t begin,
             std::int64_t end)
-      : first(static_cast<std::size_t>(begin)), size(static_cast<std::size_t>(end - begin)) {
+      : first(index(begin)), size(index(end - begin)) {
     for (std::size_t k = 0; k < size; ++k) {
-      const auto a =
-          static_cast<std::uint32_t>(particles.id[static_cast<std::size_t>(network.i[first + k])]);
-      const auto b =
-          static_cast<std::uint32_t>(particles.id[static_cast<std::size_t>(network.j[first + k])]);
+      const auto a = static_cast<std::uint32_t>(particles.id[index(network.i[first + k])]);
+      const auto b = static_cast<std::uint32_t>(particles.id[index(network.j[first + k])]);
       low[k] = std::min(a, b);
       high[k] = std::max(a, b);
     }
@@ -50,7 +49,7 @@ void add_across(const PairRandom& random, const PairBlock<D>& pairs, const PairN
   random.four(pairs.lows(), pairs.highs(), {w[0], w[1], w[2], w[3]});
   for (std::size_t n = 0; n < pairs.size; ++n) {
     const std::size_t k = pairs.first + n;
-    const bool ascending = particles.id[static_cast<std::size_t>(network.i[k])] == pairs.low[n];
+    const bool ascending = particles.id[index(network.i[k])] == pairs.low[n];
     force[k] +=
         std::sqrt(2.0 * network.kT[k] / dt * network.zeta_perp[k]) *
         across_line<D>(network.e[k], ascending ? 1.0 : -1.0, {w[0][n], w[1][n], w[2][n], w[3][n]});
@@ -67,7 +66,7 @@ EdgeNormals<D>::EdgeNormals(const PairRandom& random, const PairNetwork<D>& netw
                           static_cast<std::int64_t>(k) + 1);
   low_ = pair.low[0];
   high_ = pair.high[0];
-  sign_ = particles.id[static_cast<std::size_t>(network.i[k])] == low_ ? 1.0 : -1.0;
+  sign_ = particles.id[index(network.i[k])] == low_ ? 1.0 : -1.0;
 }
 
 template <int D>
@@ -91,7 +90,7 @@ void draw_edge_noise(const PairNetwork<D>& network, const Particles<D>& particle
                      std::uint64_t seed, std::uint64_t step, double dt,
                      std::vector<Vec<D>>& force) {
   const PairRandom random(seed, step);
-  resize_afresh(force, static_cast<std::size_t>(network.size()));
+  resize_afresh(force, index(network.size()));
   parallel_ranges(network.size(), drawn_at_once, [&](std::int64_t begin, std::int64_t end) {
     const PairBlock<D> pairs(network, particles, begin, end);
     std::array<double, drawn_at_once> w;
@@ -109,7 +108,7 @@ void add_drag_noise(const Particles<D>& particles, std::uint64_t seed, std::uint
                     double amplitude, std::vector<Vec<D>>& force) {
   const CounterRandom random(seed, Stream::drag_noise);
   parallel_for(particles.size(), [&](std::int64_t particle) {
-    const auto i = static_cast<std::size_t>(particle);
+    const auto i = index(particle);
     if (particles.is_known(i)) return;
     const auto n = random.normals(step, 0, static_cast<std::uint64_t>(particles.id[i]), 0);
     for (std::size_t c = 0; c < D; ++c) force[i].x[c] += amplitude * n[c];

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/particles/rigid_body.h"
 
 namespace odpd {
@@ -30,7 +31,7 @@ std::vector<double> laplacians(const SiteFrame<D>& frame, const BalancedFrame<D>
     unit[c] = 1.0;
     const auto column = turn_under<D>(balanced.sites, balanced.arms, unit);
     if (!column) refuse_free_turn(frame, balanced);
-    response[static_cast<std::size_t>(c)] = *column;
+    response[index(c)] = *column;
   }
   const double share = 1.0 / static_cast<double>(frame.sites.size());
   std::vector<double> laplacian;
@@ -85,7 +86,7 @@ void write_frame(const SiteFrame<D>& frame, std::span<const Vec<D>> places, std:
       network.u.set(k, 0.5 * spring * dot(d, d));
       network.f_c[k] = dot(force, network.e[k]);
       network.k_c.set(k, spring);
-      auto& beyond = network.beyond[k - static_cast<std::size_t>(network.pairs())];
+      auto& beyond = network.beyond[k - index(network.pairs())];
       beyond.force = force - network.f_c[k] * network.e[k];
       // These shares add up to L_i over the edges of i.
       const double share =

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
@@ -20,7 +21,7 @@ struct Flat {
 };
 template <int D>
 struct Flat<Vec<D>> {
-  static constexpr std::size_t width = static_cast<std::size_t>(D);
+  static constexpr std::size_t width = index(D);
   using Scalar = double;
   static double at(const Vec<D>& v, std::size_t c) { return v.x[c]; }
   static void set(Vec<D>& v, std::size_t c, double s) { v.x[c] = s; }
@@ -70,8 +71,7 @@ void FieldTable<D>::reorder(const std::vector<std::int32_t>& order) {
     std::visit(
         [&](auto* column) {
           auto moved = *column;
-          for (std::size_t k = 0; k < order.size(); ++k)
-            moved[k] = (*column)[static_cast<std::size_t>(order[k])];
+          for (std::size_t k = 0; k < order.size(); ++k) moved[k] = (*column)[index(order[k])];
           column->swap(moved);
         },
         field.column);

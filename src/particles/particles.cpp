@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
@@ -91,10 +92,9 @@ void Particles<D>::load(const StateReader& in) {
 
 template <int D>
 std::vector<std::int32_t> Particles<D>::index_of_id() const {
-  std::vector<std::int32_t> index(id.size());
-  for (std::size_t i = 0; i < id.size(); ++i)
-    index[static_cast<std::size_t>(id[i])] = static_cast<std::int32_t>(i);
-  return index;
+  std::vector<std::int32_t> index_of(id.size());
+  for (std::size_t i = 0; i < id.size(); ++i) index_of[index(id[i])] = static_cast<std::int32_t>(i);
+  return index_of;
 }
 
 template class Particles<2>;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
@@ -29,22 +30,21 @@ std::optional<Vec<D>> turn_under(std::span<const Vec<D>> arms, std::span<const V
     for (int c = 0; c < n; ++c) {
       Vec<D> unit{};
       unit[c] = 1.0;
-      m[static_cast<std::size_t>(c)] += torque(ends[k], swing(unit, arms[k]));
+      m[index(c)] += torque(ends[k], swing(unit, arms[k]));
     }
   }
   const double size = std::sqrt(arms_squared * ends_squared);
   Vec<D> w = l;
-  for (std::size_t p = 0; p < static_cast<std::size_t>(n); ++p) {
+  for (std::size_t p = 0; p < index(n); ++p) {
     if (!(m[p].x[p] > 1e-12 * size)) return std::nullopt;
-    for (std::size_t row = p + 1; row < static_cast<std::size_t>(n); ++row) {
+    for (std::size_t row = p + 1; row < index(n); ++row) {
       const double factor = m[row].x[p] / m[p].x[p];
       m[row] -= factor * m[p];
       w.x[row] -= factor * w.x[p];
     }
   }
-  for (std::size_t p = static_cast<std::size_t>(n); p-- > 0;) {
-    for (std::size_t col = p + 1; col < static_cast<std::size_t>(n); ++col)
-      w.x[p] -= m[p].x[col] * w.x[col];
+  for (std::size_t p = index(n); p-- > 0;) {
+    for (std::size_t col = p + 1; col < index(n); ++col) w.x[p] -= m[p].x[col] * w.x[col];
     w.x[p] /= m[p].x[p];
   }
   return w;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/random.h"
 
 namespace odpd {
@@ -59,8 +60,7 @@ struct Placer {
     for (std::uint64_t attempt = 0; attempt < most_attempts; ++attempt) {
       const auto u = random.uniforms(attempt, 0, number, 0);
       RigidPose<D> pose;
-      for (int c = 0; c < D; ++c)
-        pose.centre[c] = low[c] + (high[c] - low[c]) * u[static_cast<std::size_t>(c)];
+      for (int c = 0; c < D; ++c) pose.centre[c] = low[c] + (high[c] - low[c]) * u[index(c)];
       if (!fits(pose.centre, reach)) continue;
       turn_at_random(random.uniforms(attempt, 1, number, 0), pose.orientation);
       return pose;
@@ -121,7 +121,7 @@ void move_bodies(const std::vector<std::vector<Vec<D>>>& constituents, const Box
   if (constituents.size() != particles.bodies.size())
     fail(
         fmt::format("it has {} bodies, the case {}", constituents.size(), particles.bodies.size()));
-  const std::vector<std::int32_t> index = particles.index_of_id();
+  const std::vector<std::int32_t> index_of = particles.index_of_id();
   for (std::size_t b = 0; b < constituents.size(); ++b) {
     RigidBody<D>& body = particles.bodies[b];
     const std::vector<Vec<D>>& points = constituents[b];
@@ -148,7 +148,7 @@ void move_bodies(const std::vector<std::vector<Vec<D>>>& constituents, const Box
     if (!fits(pose)) fail(fmt::format("body {} has another shape than in the case", b));
     body.pose = pose;
     for (std::size_t k = 0; k < points.size(); ++k) {
-      const auto p = static_cast<std::size_t>(index[static_cast<std::size_t>(body.members[k])]);
+      const auto p = index(index_of[index(body.members[k])]);
       place_constituent(body, pose, k, box, particles.position[p], particles.image[p]);
     }
   }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/scene/bodies.h"
 
 namespace odpd {
@@ -29,7 +30,7 @@ Vec<D> optional_body_vector(const Config& entry, const std::string& key) {
 // An angular velocity or a torque: one number in 2D, a vector in 3D.
 template <int D>
 Vec<D> turning_vector(const Config& entry, const std::string& key) {
-  constexpr auto n = static_cast<std::size_t>(rotation_components<D>);
+  constexpr auto n = index(rotation_components<D>);
   if (!entry.has(key)) return {};
   std::vector<double> values = n == 1 ? std::vector<double>{entry.number(key)} : entry.numbers(key);
   if (values.size() == n) values.resize(D, 0.0);

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/random.h"
 #include "odpd/operator/edge_sums.h"
 
@@ -30,9 +31,9 @@ std::vector<Vec<D>> grid_sites(const Vec<D>& low, const Vec<D>& high,
                                const std::array<std::int64_t, D>& count) {
   std::vector<Vec<D>> sites(1, low);
   for (int c = 0; c < D; ++c) {
-    const std::int64_t n = count[static_cast<std::size_t>(c)];
+    const std::int64_t n = count[index(c)];
     std::vector<Vec<D>> next;
-    next.reserve(sites.size() * static_cast<std::size_t>(n));
+    next.reserve(sites.size() * index(n));
     for (std::int64_t k = 0; k < n; ++k)
       for (Vec<D> site : sites) {
         site[c] =
@@ -54,15 +55,14 @@ std::vector<Vec<D>> lattice(const Vec<D>& low, const Vec<D>& high, std::int64_t 
   for (; sites < count; spacing *= 0.999) {
     sites = 1;
     for (int c = 0; c < D; ++c) {
-      n[static_cast<std::size_t>(c)] = std::max<std::int64_t>(
+      n[index(c)] = std::max<std::int64_t>(
           1, static_cast<std::int64_t>(std::floor((high[c] - low[c]) / spacing + 1e-9)));
-      sites *= n[static_cast<std::size_t>(c)];
+      sites *= n[index(c)];
     }
   }
   const std::vector<Vec<D>> all = grid_sites<D>(low, high, n);
   std::vector<Vec<D>> chosen;
-  for (std::int64_t k = 0; k < count; ++k)
-    chosen.push_back(all[static_cast<std::size_t>(k * sites / count)]);
+  for (std::int64_t k = 0; k < count; ++k) chosen.push_back(all[index(k * sites / count)]);
   return chosen;
 }
 
@@ -72,13 +72,12 @@ std::vector<Vec<D>> random_points(std::uint64_t seed, const Box<D>& box, const V
                                   const Particles<D>& particles) {
   constexpr std::uint64_t most_attempts = 1000;
   const CounterRandom random(seed, Stream::start_positions);
-  std::vector<Vec<D>> points(static_cast<std::size_t>(count));
+  std::vector<Vec<D>> points(index(count));
   for (std::int64_t k = 0; k < count; ++k) {
-    Vec<D>& point = points[static_cast<std::size_t>(k)];
+    Vec<D>& point = points[index(k)];
     for (std::uint64_t attempt = 0; attempt < most_attempts; ++attempt) {
       const auto u = random.uniforms(0, attempt, static_cast<std::uint64_t>(k), 0);
-      for (int c = 0; c < D; ++c)
-        point[c] = low[c] + (high[c] - low[c]) * u[static_cast<std::size_t>(c)];
+      for (int c = 0; c < D; ++c) point[c] = low[c] + (high[c] - low[c]) * u[index(c)];
       if (!inside_a_body(box, particles, point)) break;
       if (attempt + 1 == most_attempts)
         throw ConfigError(
@@ -115,7 +114,7 @@ std::vector<std::int32_t> assign_species(const std::vector<SpeciesSettings>& spe
       n = std::llround(share * static_cast<double>(count - fixed)) - given;
       given += n;
     }
-    list.insert(list.end(), static_cast<std::size_t>(n), static_cast<std::int32_t>(k));
+    list.insert(list.end(), index(n), static_cast<std::int32_t>(k));
   }
   const CounterRandom random(seed, Stream::start_species);
   for (std::size_t k = list.size(); k > 1; --k) {  // Fisher-Yates
@@ -144,7 +143,7 @@ void check_start_positions(const SceneSettings<D>& settings) {
 template <int D>
 void append_molecule_species(const SceneSettings<D>& settings, bool given,
                              std::vector<std::int32_t>& species) {
-  auto next = species.size() - (given ? static_cast<std::size_t>(settings.molecule_beads()) : 0);
+  auto next = species.size() - (given ? index(settings.molecule_beads()) : 0);
   for (const MoleculeSettings<D>& m : settings.molecules)
     for (std::int64_t n = 0; n < m.molecules(); ++n)
       for (const std::int32_t wanted : m.species) {
@@ -155,9 +154,8 @@ void append_molecule_species(const SceneSettings<D>& settings, bool given,
               "{}: particle {} has the species '{}', but it belongs to a [[molecule]] '{}', where "
               "that is '{}': the last particles of a start file are those of the molecules, in "
               "order",
-              settings.start_file, next,
-              settings.species[static_cast<std::size_t>(species[next])].name, m.name,
-              settings.species[static_cast<std::size_t>(wanted)].name));
+              settings.start_file, next, settings.species[index(species[next])].name, m.name,
+              settings.species[index(wanted)].name));
         }
         ++next;
       }
@@ -172,7 +170,7 @@ void place_walls(const SceneSettings<D>& settings, Particles<D>& particles) {
     for (const WallLayer& layer : wall.layers) {
       std::array<std::int64_t, D> count{};
       for (int c = 0; c < D; ++c)
-        count[static_cast<std::size_t>(c)] =
+        count[index(c)] =
             c == wall.axis ? 1
             : layer.count > 0
                 ? layer.count
@@ -258,8 +256,7 @@ void relax(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& 
     for (std::size_t i = 0; i < force.size(); ++i) {
       for (const std::int32_t edge : network.edges_of(static_cast<std::int64_t>(i)))
         // Both ends of a bond move, with few other neighbours to damp it.
-        stiffness[i] +=
-            (edge < network.pairs() ? 1.0 : 2.0) * network.k_c[static_cast<std::size_t>(edge)];
+        stiffness[i] += (edge < network.pairs() ? 1.0 : 2.0) * network.k_c[index(edge)];
       const double size = norm(force[i]);
       if (!particles.is_free(i) || size == 0.0) continue;
       const double path = stiffness[i] > 0.0 ? std::min(size / stiffness[i], longest) : longest;
@@ -292,9 +289,9 @@ void draw_velocities(std::uint64_t seed, double kT, double mass, bool conserved,
     if (!particles.is_known(i)) particles.end_velocity[i] -= mean;
   // The rigid part of independent velocities has the right variance.
   std::vector<Vec<D>> arms, velocities;
-  const std::vector<std::int32_t> index = particles.index_of_id();
+  const std::vector<std::int32_t> index_of = particles.index_of_id();
   const auto end_velocity = [&](std::int64_t id) -> Vec<D>& {
-    return particles.end_velocity[static_cast<std::size_t>(index[static_cast<std::size_t>(id)])];
+    return particles.end_velocity[index(index_of[index(id)])];
   };
   for (const RigidBody<D>& body : particles.bodies) {
     if (body.known) continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/particles/rigid_body.h"
 #include "odpd/scene/scene_settings.h"
 
@@ -73,7 +74,7 @@ void read_beads(const Config& entry, const std::string& shape, MoleculeSettings<
 
 template <int D>
 double span_of(const MoleculeSettings<D>& m, std::int64_t i, std::int64_t j) {
-  return norm(m.shape[static_cast<std::size_t>(i)] - m.shape[static_cast<std::size_t>(j)]);
+  return norm(m.shape[index(i)] - m.shape[index(j)]);
 }
 
 // A table per bond, with the molecule's H, r_0 and r_max where it has none of its own.
@@ -144,7 +145,7 @@ void check_joined(const Config& entry, const MoleculeSettings<D>& m) {
   joined[0] = true;
   for (std::int64_t round = 0; round < m.beads(); ++round)
     for (const auto& bond : m.bonds) {
-      const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+      const auto i = index(bond.i), j = index(bond.j);
       if (joined[i] || joined[j]) joined[i] = joined[j] = true;
     }
   for (std::size_t k = 0; k < joined.size(); ++k)

@@ -6,6 +6,7 @@
 #include <queue>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/random.h"
 #include "odpd/scene/bodies.h"
 #include "odpd/scene/fill.h"
@@ -49,8 +50,7 @@ class Room {
   Vec<D> centre(std::uint64_t attempt, std::uint64_t number) const {
     const auto u = random_.uniforms(attempt, 0, number, 0);
     Vec<D> r;
-    for (int c = 0; c < D; ++c)
-      r[c] = low_[c] + (high_[c] - low_[c]) * u[static_cast<std::size_t>(c)];
+    for (int c = 0; c < D; ++c) r[c] = low_[c] + (high_[c] - low_[c]) * u[index(c)];
     return r;
   }
 
@@ -76,7 +76,7 @@ class Room {
         if (turn == most_directions) return {};
         const auto n = random_.normals(attempt, 2 + turn, number, beads.size());
         Vec<D> direction;
-        for (int c = 0; c < D; ++c) direction[c] = n[static_cast<std::size_t>(c)];
+        for (int c = 0; c < D; ++c) direction[c] = n[index(c)];
         next = beads.back() + (m.walk / norm(direction)) * direction;
         if (is_open(next)) break;
       }
@@ -145,7 +145,7 @@ void place_molecules(const std::vector<MoleculeSettings<D>>& settings, const Box
               "box, or give positions",
               m.name, n + 1, m.molecules()));
       } else {
-        for (Vec<D>& r : beads) r += m.positions[static_cast<std::size_t>(n)];
+        for (Vec<D>& r : beads) r += m.positions[index(n)];
       }
       for (std::size_t k = 0; k < beads.size(); ++k) {
         particles.add(beads[k], m.species[k], 0);
@@ -156,16 +156,14 @@ void place_molecules(const std::vector<MoleculeSettings<D>>& settings, const Box
 
 template <int D>
 void join_images(const std::vector<Bond>& bonds, const Box<D>& box, Particles<D>& particles) {
-  const std::vector<std::int32_t> index = particles.index_of_id();
-  std::vector<std::vector<std::size_t>> partners(index.size());
-  const auto place = [&](std::int64_t id) {
-    return static_cast<std::size_t>(index[static_cast<std::size_t>(id)]);
-  };
+  const std::vector<std::int32_t> index_of = particles.index_of_id();
+  std::vector<std::vector<std::size_t>> partners(index_of.size());
+  const auto place = [&](std::int64_t id) { return index(index_of[index(id)]); };
   for (const Bond& bond : bonds) {
     partners[place(bond.i)].push_back(place(bond.j));
     partners[place(bond.j)].push_back(place(bond.i));
   }
-  std::vector<char> joined(index.size(), 0);
+  std::vector<char> joined(index_of.size(), 0);
   for (const Bond& bond : bonds) {
     std::queue<std::size_t> waiting;
     if (joined[place(bond.i)] == 0) waiting.push(place(bond.i));

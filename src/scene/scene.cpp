@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/scene/body_places.h"
 #include "odpd/scene/fill.h"
 #include "odpd/scene/start_bonds.h"
@@ -17,7 +18,7 @@ template <int D>
 std::shared_ptr<const PairModel<D>> model_of(const SceneSettings<D>& settings) {
   if (settings.model == nullptr) throw ConfigError("the scene has no pair model");
   const int species = settings.model->species();
-  if (species != 0 && static_cast<std::size_t>(species) != settings.species.size())
+  if (species != 0 && index(species) != settings.species.size())
     throw ConfigError(
         fmt::format("the pair model is of {} species, the scene has {}: make it for all of them",
                     species, settings.species.size()));
@@ -54,7 +55,7 @@ Scene<D>::Scene(SceneSettings<D> settings)
 template <int D>
 void Scene<D>::start_flow() {
   const Shear& shear = *settings_.box.shear;
-  const auto up = static_cast<std::size_t>(shear.gradient);
+  const auto up = index(shear.gradient);
   for (std::size_t i = 0; i < particles_.end_velocity.size(); ++i) {
     if (particles_.is_known(i)) continue;
     Vec<D>& v = particles_.end_velocity[i];
@@ -147,7 +148,7 @@ void Scene<D>::add_driving_forces(const Particles<D>& particles, std::span<const
 
 template <int D>
 Vec<D> Scene<D>::known_velocity(std::int32_t group, double) const {
-  return settings_.walls[static_cast<std::size_t>(group - 1)].velocity;
+  return settings_.walls[index(group - 1)].velocity;
 }
 
 template <int D>

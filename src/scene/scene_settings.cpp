@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "odpd/core/index.h"
 #include "odpd/scene/body_places.h"
 #include "odpd/scene/drive_keys.h"
 #include "odpd/scene/vector_key.h"
@@ -109,10 +110,10 @@ std::vector<FluidKeys::Pair> read_pairs(const Config& config,
   for (const Config& entry : config.tables("pair")) {
     const std::vector<std::string> names = entry.texts("species");
     if (names.size() != 2) entry.fail("species", "two names are needed");
-    const auto index = [&](const std::string& name) {
-      return static_cast<std::size_t>(species_index(species, entry, "species", name));
+    const auto numbered = [&](const std::string& name) {
+      return index(species_index(species, entry, "species", name));
     };
-    pairs.push_back({entry, index(names[0]), index(names[1])});
+    pairs.push_back({entry, numbered(names[0]), numbered(names[1])});
   }
   return pairs;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/particles/rigid_body.h"
 
 namespace odpd {
@@ -16,13 +17,13 @@ template <int D>
 struct StartParticles {
   const SceneSettings<D>& settings;
   const Particles<D>& particles;
-  std::vector<std::int32_t> index = particles.index_of_id();
+  std::vector<std::int32_t> index_of = particles.index_of_id();
   std::int64_t first =
       particles.size() - static_cast<std::int64_t>(settings.start_positions.size());
 
   std::int64_t row(std::int64_t id) const { return id - first; }
   const Vec<D>& position(std::int64_t id) const {
-    return particles.position[static_cast<std::size_t>(index[static_cast<std::size_t>(id)])];
+    return particles.position[index(index_of[index(id)])];
   }
 };
 

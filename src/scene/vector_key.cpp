@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "odpd/core/index.h"
+
 namespace odpd {
 
 namespace {
@@ -13,7 +15,7 @@ Vec<D> vector_of(const Config& config, const std::string& key, const std::vector
     config.fail(key, fmt::format("{} components are needed in {} dimensions, there are {}", D, D,
                                  values.size()));
   Vec<D> v;
-  for (int c = 0; c < D; ++c) v[c] = values[static_cast<std::size_t>(c)];
+  for (int c = 0; c < D; ++c) v[c] = values[index(c)];
   return v;
 }
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "odpd/core/index.h"
 #include "odpd/core/timer.h"
 #include "odpd/solvers/backends.h"
 #include "odpd/solvers/preconditioner.h"

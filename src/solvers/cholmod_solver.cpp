@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "odpd/core/index.h"
 #include "odpd/core/timer.h"
 #include "odpd/solvers/assembled_solver.h"
 #include "odpd/solvers/backends.h"

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/core/timer.h"
 #include "odpd/solvers/assembled_solver.h"

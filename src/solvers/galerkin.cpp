@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "multilevel_kernels.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 
 namespace odpd {
@@ -11,7 +12,7 @@ namespace odpd {
 namespace {
 
 template <int D>
-using Triangle = std::array<float, static_cast<std::size_t>(GridShape<D>::triangle)>;
+using Triangle = std::array<float, index(GridShape<D>::triangle)>;
 
 template <int D>
 Vec<D> position_of(const Resistance<D>& resistance, std::size_t node) {
@@ -37,7 +38,7 @@ class Elements {
       : shape_(shape), resistance_(resistance) {
     std::int64_t cells = 1;
     for (int c = 0; c < 4; ++c) {
-      const auto i = static_cast<std::size_t>(c);
+      const auto i = index(c);
       view_.cells[i] = c < D ? static_cast<float>(shape.cells[i]) : 1.0F;
       view_.wrap[i] = c < D && shape.periodic[i] ? view_.cells[i] : 0.0F;
       view_.stride[i] = c < D ? static_cast<std::int32_t>(cells) : 0;
@@ -61,7 +62,7 @@ class Elements {
   void place_nodes() {
     positions_.resize(4 * resistance_.nodes());
     parallel_for(resistance_.nodes(), [&](std::int64_t n) {
-      const Vec<D> r = grid_position(resistance_, static_cast<std::size_t>(n)) - shape_.low;
+      const Vec<D> r = grid_position(resistance_, index(n)) - shape_.low;
       for (int c = 0; c < 4; ++c)
         positions_.data()[4 * n + c] =
             c < D ? static_cast<float>(r[c < D ? c : 0] * shape_.per_length[c < D ? c : 0]) : 0.0F;
@@ -82,7 +83,7 @@ void Elements<D>::add_node(std::int64_t n) {
   static_assert(sizeof(Vec<D>) == D * sizeof(double));  // EdgeView reads them as numbers
   static_assert(sizeof(typename Resistance<D>::Link) == 2 * sizeof(std::int32_t));
   static_assert(sizeof(typename Resistance<D>::Across) == 2 * sizeof(double));
-  const auto node = static_cast<std::size_t>(n);
+  const auto node = index(n);
   const auto links = resistance_.links(node);
   Triangle<D> anchor{};
   if (!resistance_.anchors().empty()) anchor = triangle_of<D>(resistance_.anchors()[node]);
@@ -101,7 +102,7 @@ void Elements<D>::add_to(GridOperator<D>& a) const {
     for (int n = 0; n < corners; ++n) {
       auto point = low;
       for (int c = 0; c < D; ++c) {
-        const auto i = static_cast<std::size_t>(c);
+        const auto i = index(c);
         point[i] += (n >> c) % 2;
         if (shape_.periodic[i]) point[i] %= shape_.points(c);
       }
@@ -152,11 +153,11 @@ FrictionSpread friction_spread(const Resistance<D>& resistance) {
   // Some hundred particles tell it well enough.
   const std::int64_t step = std::max<std::int64_t>(1, resistance.nodes() / 256);
   for (std::int64_t n = 0; n < resistance.nodes(); n += step) {
-    const auto node = static_cast<std::size_t>(n);
+    const auto node = index(n);
     const Vec<D> own = position_of(resistance, node);
     double sum = 0.0, squares = 0.0;
     for (const auto& link : resistance.links(node)) {
-      const auto other = static_cast<std::size_t>(link.node);
+      const auto other = index(link.node);
       const Vec<D> d = resistance.box().separation(own, position_of(resistance, other));
       double zeta = dot(resistance.g(link), resistance.g(link));
       if (resistance.transverse())

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "multilevel_kernels.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/solvers/multigrid.h"
 #include "odpd/solvers/preconditioner.h"
@@ -72,7 +73,7 @@ void GridOperator<D>::set_up_smoother() {
   for_each_point(shape_, [&](const auto& point) {
     const std::int64_t place = shape_.place(point);
     const float* const centre = block(place, GridShape<D>::entries / 2);
-    std::array<double, static_cast<std::size_t>(D * D)> m{};
+    std::array<double, index(D * D)> m{};
     double trace = 0.0;
     int k = 0;
     for (std::size_t row = 0; row < D; ++row)
@@ -138,7 +139,7 @@ void GridOperator<D>::fill_ghosts(float* vector) const {
   for (int component = 0; component < D; ++component) {
     float* const x = first(vector) + component * shape_.pitch();
     for (int c = 0; c < D; ++c) {
-      if (!shape_.periodic[static_cast<std::size_t>(c)]) continue;
+      if (!shape_.periodic[index(c)]) continue;
       // Runs of `below` consecutive places, one per line of this direction; the lower directions have their ghosts already.
       const std::int64_t below = shape_.stride(c);
       const std::int64_t line = below * (shape_.points(c) + 2);
@@ -200,7 +201,7 @@ namespace {
 /// For each of the 3^D fine points around a coarse one, what its couplings contribute.
 template <int D>
 std::vector<std::vector<CoarseningPath>> coarsening_paths(const GridShape<D>& shape) {
-  std::vector<std::vector<CoarseningPath>> paths(static_cast<std::size_t>(GridShape<D>::entries));
+  std::vector<std::vector<CoarseningPath>> paths(index(GridShape<D>::entries));
   const auto side = [](int entry, int c) {
     for (; c > 0; --c) entry /= 3;
     return entry % 3 - 1;
@@ -218,8 +219,7 @@ std::vector<std::vector<CoarseningPath>> coarsening_paths(const GridShape<D>& sh
           weight *= hat(side(fine, c)) *
                     hat(side(fine, c) + side(neighbour, c) - (halved ? 2 : 1) * side(coarse, c));
         }
-        if (weight > 0.0F)
-          paths[static_cast<std::size_t>(fine)].push_back({neighbour, coarse, weight});
+        if (weight > 0.0F) paths[index(fine)].push_back({neighbour, coarse, weight});
       }
   return paths;
 }
@@ -230,12 +230,12 @@ std::int64_t coarse_point(const GridShape<D>& shape, const GridShape<D>& coarse,
                           const typename GridShape<D>::Index& fine) {
   std::int64_t number = 0, unit = 1;
   for (int c = 0; c < D; unit *= coarse.points(c), ++c, side /= 3) {
-    std::int64_t x = fine[static_cast<std::size_t>(c)] - (side % 3 - 1);
+    std::int64_t x = fine[index(c)] - (side % 3 - 1);
     if (shape.coarsened(c)) {
       if (x % 2 != 0) return -1;
       x /= 2;
     }
-    if (shape.periodic[static_cast<std::size_t>(c)])
+    if (shape.periodic[index(c)])
       x = (x + coarse.points(c)) % coarse.points(c);
     else if (x < 0 || x >= coarse.points(c))
       return -1;
@@ -254,7 +254,7 @@ GridOperator<D> GridOperator<D>::coarsened() const {
   constexpr std::size_t entries = GridShape<D>::entries, triangle = GridShape<D>::triangle,
                         padded = D == 2 ? 4 : 8;
   using Stencil = std::array<std::array<float, padded>, entries>;
-  std::vector<Stencil> sums(static_cast<std::size_t>(coarse.shape_.points()));
+  std::vector<Stencil> sums(index(coarse.shape_.points()));
   Stencil from{};
   for_each_point(shape_, [&](const auto& fine) {
     const float* const blocks = block(shape_.place(fine), 0);
@@ -264,10 +264,10 @@ GridOperator<D> GridOperator<D>::coarsened() const {
       if (paths[side].empty()) continue;
       const std::int64_t number = coarse_point(shape_, coarse.shape_, static_cast<int>(side), fine);
       if (number < 0) continue;
-      Stencil& sum = sums[static_cast<std::size_t>(number)];
+      Stencil& sum = sums[index(number)];
       for (const CoarseningPath& path : paths[side]) {
-        const auto& a = from[static_cast<std::size_t>(path.neighbour)];
-        auto& b = sum[static_cast<std::size_t>(path.coarse)];
+        const auto& a = from[index(path.neighbour)];
+        auto& b = sum[index(path.coarse)];
         for (std::size_t k = 0; k < padded; ++k) b[k] += path.weight * a[k];
       }
     }

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/core/index.h"
+
 namespace odpd {
 
 template <int D>
 GridShape<D>::GridShape(const Vec<D>& origin, const Vec<D>& lengths,
                         const Index& cells_per_direction,
-                        const std::array<bool, static_cast<std::size_t>(D)>& is_periodic)
+                        const std::array<bool, index(D)>& is_periodic)
     : low(origin), length(lengths), cells(cells_per_direction), periodic(is_periodic), total_(1) {
   for (int c = 0; c < D; ++c) {
     const std::int64_t ghosts = periodic[at(c)] ? 1 : 0;
@@ -63,7 +65,7 @@ GridShape<D> choose_grid(const Box<D>& box, std::span<const double> positions, d
   Vec<D> low{}, length = box.size;
   for (int c = 0; c < D; ++c) {
     if (!box.is_periodic(c) && !positions.empty()) {
-      const auto first = static_cast<std::size_t>(c);
+      const auto first = index(c);
       double least = positions[first], most = positions[first];
       for (std::size_t k = first; k < positions.size(); k += D) {
         least = std::min(least, positions[k]);
@@ -83,7 +85,7 @@ GridShape<D> choose_grid(const Box<D>& box, std::span<const double> positions, d
     std::int64_t best = std::max<std::int64_t>(1, static_cast<std::int64_t>(wanted));
     for (std::int64_t n = std::max<std::int64_t>(1, best * 3 / 4); n <= best * 4 / 3 + 1; ++n)
       if (misfit(n) < misfit(best)) best = n;
-    cells[static_cast<std::size_t>(c)] = best;
+    cells[index(c)] = best;
   }
   return GridShape<D>(low, length, cells, box.periodic);
 }

@@ -14,6 +14,7 @@
 #include "cg_engine.h"
 #include "multilevel_kernels.h"
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/solvers/backends.h"
 #include "odpd/solvers/multilevel.h"

@@ -6,6 +6,7 @@
 
 #include "multilevel_kernels.h"
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 
 namespace odpd {
 
@@ -49,7 +50,7 @@ void Multigrid<D>::set_up_dense() {
   const GridOperator<D>& a = levels_.back().a;
   const GridShape<D>& shape = a.shape();
   dense_places_.clear();
-  std::vector<std::int64_t> number(static_cast<std::size_t>(shape.total()), -1);
+  std::vector<std::int64_t> number(index(shape.total()), -1);
   for_each_point(shape, [&](const auto& point) {
     const std::int64_t place = shape.place(point);
     const float* const centre = a.block(place, GridShape<D>::entries / 2);
@@ -59,19 +60,19 @@ void Multigrid<D>::set_up_dense() {
       for (int col = row; col < D; ++col, ++k)
         if (row == col) trace += static_cast<double>(centre[k * 16]);
     if (!(trace > 0.0)) return;  // no particle near it
-    number[static_cast<std::size_t>(place)] = static_cast<std::int64_t>(dense_places_.size());
+    number[index(place)] = static_cast<std::int64_t>(dense_places_.size());
     dense_places_.push_back(place);
   });
   const auto n = static_cast<Eigen::Index>(dense_places_.size()) * D;
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(n, n);
   for_each_point(shape, [&](const auto& point) {
-    const std::int64_t row_number = number[static_cast<std::size_t>(shape.place(point))];
+    const std::int64_t row_number = number[index(shape.place(point))];
     if (row_number < 0) return;
     for (int entry = 0; entry < GridShape<D>::entries; ++entry) {
       auto other = point;
       bool inside = true;
       for (int c = 0, digits = entry; c < D; ++c, digits /= 3) {
-        const auto i = static_cast<std::size_t>(c);
+        const auto i = index(c);
         other[i] += digits % 3 - 1;
         if (shape.periodic[i])
           other[i] = (other[i] + shape.points(c)) % shape.points(c);
@@ -79,7 +80,7 @@ void Multigrid<D>::set_up_dense() {
           inside = inside && other[i] >= 0 && other[i] < shape.points(c);
       }
       if (!inside) continue;
-      const std::int64_t col_number = number[static_cast<std::size_t>(shape.place(other))];
+      const std::int64_t col_number = number[index(shape.place(other))];
       if (col_number < 0) continue;
       const float* const block = a.block(shape.place(point), entry);
       int k = 0;
@@ -147,7 +148,7 @@ void Multigrid<D>::restrict_residual(std::size_t level) {
     std::size_t count = 1;
     auto centre = point;
     for (int c = 0; c < D; ++c) {
-      const auto i = static_cast<std::size_t>(c);
+      const auto i = index(c);
       if (!f.coarsened(c)) continue;
       centre[i] = 2 * point[i];
       const std::size_t before = count;
@@ -183,7 +184,7 @@ void Multigrid<D>::add_correction(std::size_t level) {
     float weight = 1.0F;
     auto lower = point;
     for (int c = 0; c < D; ++c) {
-      const auto i = static_cast<std::size_t>(c);
+      const auto i = index(c);
       if (!f.coarsened(c)) continue;
       lower[i] = point[i] / 2;
       if (point[i] % 2 == 0) continue;

@@ -6,6 +6,7 @@
 
 #include "multilevel_kernels.h"
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/solvers/galerkin.h"
 
@@ -96,8 +97,8 @@ void Multilevel<D>::place_nodes(const Resistance<D>& resistance, const SlicedRow
   place_.resize(places_ * floats_per_place);
   restricted_.resize(chunks() * grid_floats);
   correction_.resize(grid_floats);
-  touched_begin_.assign(static_cast<std::size_t>(chunks()), grid_floats);
-  touched_end_.assign(static_cast<std::size_t>(chunks()), 0);
+  touched_begin_.assign(index(chunks()), grid_floats);
+  touched_end_.assign(index(chunks()), 0);
   const std::int64_t reach =
       shape.corner_offset(GridShape<D>::corners - 1) * SlicedRows<D>::stride +
       SlicedRows<D>::stride;
@@ -105,19 +106,18 @@ void Multilevel<D>::place_nodes(const Resistance<D>& resistance, const SlicedRow
     std::int64_t begin = grid_floats, end = 0;
     for (std::int64_t place = chunk_begin(places_, chunk); place < chunk_begin(places_, chunk + 1);
          ++place) {
-      const std::int32_t node = rows.node_of_place()[static_cast<std::size_t>(place)];
+      const std::int32_t node = rows.node_of_place()[index(place)];
       float* const out = place_.data() + floats_per_place * place;
       GridPosition<D> at{};
-      if (node >= 0)
-        at = locate(shape, grid_position(resistance, static_cast<std::size_t>(node)).x.data());
+      if (node >= 0) at = locate(shape, grid_position(resistance, index(node)).x.data());
       for (std::size_t c = 0; c < D; ++c) out[c] = at.in_cell[c];
       const std::int64_t base = shape.place(at.cell) * SlicedRows<D>::stride;
       out[3] = std::bit_cast<float>(static_cast<std::int32_t>(base));
       begin = std::min(begin, base);
       end = std::max(end, base + reach);
     }
-    touched_begin_[static_cast<std::size_t>(chunk)] = begin;
-    touched_end_[static_cast<std::size_t>(chunk)] = end;
+    touched_begin_[index(chunk)] = begin;
+    touched_end_[index(chunk)] = end;
   });
 }
 
@@ -137,7 +137,7 @@ TransferView view(const FloatArray& place, const GridShape<D>& shape) {
 template <int D>
 void Multilevel<D>::clear_chunk(std::int64_t chunk) {
   float* const grid = restricted_.data() + chunk * correction_.size();
-  const auto k = static_cast<std::size_t>(chunk);
+  const auto k = index(chunk);
   if (touched_begin_[k] < touched_end_[k])
     std::fill(grid + touched_begin_[k], grid + touched_end_[k], 0.0F);
 }
@@ -157,12 +157,12 @@ double Multilevel<D>::cycle() {
   correction_.fill(0.0F);
   for (std::int64_t chunk = 0; chunk < chunks(); ++chunk) {
     const float* const part = restricted_.data() + chunk * correction_.size();
-    const auto k = static_cast<std::size_t>(chunk);
+    const auto k = index(chunk);
     for (std::int64_t i = touched_begin_[k]; i < touched_end_[k]; ++i) sum[i] += part[i];
   }
   // What arrived at a ghost belongs to the point that it copies.
   for (int c = 0; c < D; ++c) {
-    if (!shape.periodic[static_cast<std::size_t>(c)]) continue;
+    if (!shape.periodic[index(c)]) continue;
     const std::int64_t below = shape.stride(c) * SlicedRows<D>::stride;
     const std::int64_t line = below * (shape.points(c) + 2);
     for (std::int64_t begin = 0; begin < correction_.size(); begin += line)
@@ -230,7 +230,7 @@ void Multilevel<D>::load(const StateReader& in) {
   if (saved.size() != 2 * D + 1)
     throw IoError("the grid of the checkpoint's solver has another dimension");
   typename GridShape<D>::Index cells{};
-  std::array<bool, static_cast<std::size_t>(D)> periodic{};
+  std::array<bool, index(D)> periodic{};
   for (std::size_t c = 0; c < D; ++c) {
     cells[c] = saved[c];
     periodic[c] = saved[D + c] != 0;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cg_engine.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/solvers/backends.h"
 #include "odpd/solvers/preconditioner.h"

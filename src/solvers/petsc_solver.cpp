@@ -10,6 +10,7 @@
 #include <set>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/timer.h"
 #include "odpd/solvers/assembled_solver.h"
 #include "odpd/solvers/backends.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/solvers/backends.h"
 #include "odpd/solvers/preconditioner.h"
@@ -26,7 +27,7 @@ class Picard : public Solver {
       throw SolverError(
           "picard-deflated holds the centre of mass still: set solver.hold_centre_of_mass = true");
     inverse_diagonal_.set_up(*system_);
-    residual_.resize(static_cast<std::size_t>(system_->size()));
+    residual_.resize(index(system_->size()));
     step_.resize(residual_.size());
   }
 
@@ -52,14 +53,14 @@ double Picard::update(std::span<double> x) {
     std::copy(x.begin(), x.end(), residual_.begin());
     system_->project(x);
     parallel_for(size, [&](std::int64_t k) {
-      const std::size_t i = static_cast<std::size_t>(k);
+      const std::size_t i = index(k);
       x[i] += step_[i];
       step_[i] = x[i] - residual_[i];
     });
   } else {
     system_->project(step_);
     parallel_for(size, [&](std::int64_t k) {
-      const std::size_t i = static_cast<std::size_t>(k);
+      const std::size_t i = index(k);
       x[i] += step_[i];
     });
   }
@@ -73,7 +74,7 @@ Solver::Attempt Picard::attempt(std::span<const double> b, std::span<double> x, 
   while (true) {
     system_->apply(x, residual_);
     parallel_for(static_cast<std::int64_t>(x.size()), [&](std::int64_t k) {
-      const std::size_t i = static_cast<std::size_t>(k);
+      const std::size_t i = index(k);
       residual_[i] = b[i] - residual_[i];
     });
     system_->project(residual_);

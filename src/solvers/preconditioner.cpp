@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 
 namespace odpd {
@@ -48,9 +49,9 @@ void invert_lower(std::span<double> a, std::size_t b) {
 template <int B>
 void multiply(const std::vector<double>& blocks, int block, std::span<const double> r,
               std::span<double> z) {
-  const std::size_t b = static_cast<std::size_t>(B > 0 ? B : block);
+  const std::size_t b = index(B > 0 ? B : block);
   parallel_for(static_cast<std::int64_t>(r.size() / b), [&](std::int64_t node) {
-    const std::size_t n = static_cast<std::size_t>(node);
+    const std::size_t n = index(node);
     const double* const m = &blocks[n * b * b];
     for (std::size_t i = 0; i < b; ++i) {
       double s = 0.0;
@@ -62,7 +63,7 @@ void multiply(const std::vector<double>& blocks, int block, std::span<const doub
 
 std::vector<double> block_diagonal(const System& system) {
   const std::int64_t b = system.block_size();
-  std::vector<double> blocks(static_cast<std::size_t>(system.nodes() * b * b));
+  std::vector<double> blocks(index(system.nodes() * b * b));
   system.block_diagonal(blocks);
   return blocks;
 }
@@ -81,7 +82,7 @@ void reject_block(std::int64_t node) {
 }
 
 bool invert_definite(std::span<double> block, int size) {
-  const std::size_t b = static_cast<std::size_t>(size);
+  const std::size_t b = index(size);
   if (!factor(block, b)) return false;
   invert_lower(block, b);
   // L^-T L^-1 in place: its row i needs only rows k >= i of L^-1.
@@ -98,9 +99,9 @@ bool invert_definite(std::span<double> block, int size) {
 
 void require_definite_diagonal(const System& system) {
   std::vector<double> blocks = block_diagonal(system);
-  const std::size_t b = static_cast<std::size_t>(system.block_size());
+  const std::size_t b = index(system.block_size());
   for (std::int64_t node = 0; node < system.nodes(); ++node) {
-    const std::size_t at = static_cast<std::size_t>(node) * b * b;
+    const std::size_t at = index(node) * b * b;
     if (!factor(std::span(blocks).subspan(at, b * b), b)) reject_block(node);
   }
 }
@@ -108,9 +109,9 @@ void require_definite_diagonal(const System& system) {
 void BlockJacobi::set_up(const System& system) {
   block_ = system.block_size();
   inverse_ = block_diagonal(system);
-  const std::size_t bb = static_cast<std::size_t>(block_ * block_);
+  const std::size_t bb = index(block_ * block_);
   for (std::int64_t node = 0; node < system.nodes(); ++node) {
-    const std::size_t at = static_cast<std::size_t>(node) * bb;
+    const std::size_t at = index(node) * bb;
     if (!invert_definite(std::span(inverse_).subspan(at, bb), block_)) reject_block(node);
   }
 }

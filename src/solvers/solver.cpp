@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/core/timer.h"
 #include "odpd/solvers/backends.h"
@@ -49,7 +50,7 @@ void Solver::require_bound(std::size_t b_size, std::size_t x_size) const {
   if (system_ == nullptr) throw SolverError(name() + ": solve was called before bind");
   if (system_->generation() != generation_)
     throw SolverError(name() + ": the system changed since bind: bind again before solve");
-  const std::size_t size = static_cast<std::size_t>(system_->size());
+  const std::size_t size = index(system_->size());
   if (b_size != size || x_size != size) {
     throw SolverError(fmt::format("{}: b and x must have {} elements, not {} and {}", name(), size,
                                   b_size, x_size));
@@ -134,7 +135,7 @@ Solver::Measured Solver::measure(std::span<double> x, double norm) {
   Measured m;
   m.curvature = fixed_dot(x, residual_);
   parallel_for(static_cast<std::int64_t>(x.size()), [&](std::int64_t k) {
-    const std::size_t i = static_cast<std::size_t>(k);
+    const std::size_t i = index(k);
     residual_[i] = load_[i] - residual_[i];
   });
   system_->project(residual_);

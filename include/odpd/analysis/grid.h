@@ -5,23 +5,24 @@
 #include <cmath>
 #include <cstdint>
 
+#include "odpd/core/index.h"
 #include "odpd/scene/scene.h"
 
 namespace odpd {
 
 template <int D>
 struct Grid {
-  using Counts = std::array<std::int64_t, static_cast<std::size_t>(D)>;
+  using Counts = std::array<std::int64_t, index(D)>;
 
   Grid(const Counts& cells, const Scene<D>& scene)
       : counts(cells), low(scene.fluid_low()), high(scene.fluid_high()) {}
 
   std::size_t cells() const {
     std::size_t n = 1;
-    for (const std::int64_t c : counts) n *= static_cast<std::size_t>(c);
+    for (const std::int64_t c : counts) n *= index(c);
     return n;
   }
-  std::int64_t count(int c) const { return counts[static_cast<std::size_t>(c)]; }
+  std::int64_t count(int c) const { return counts[index(c)]; }
   double spacing(int c) const { return (high[c] - low[c]) / static_cast<double>(count(c)); }
   double cell_volume() const {
     double v = 1.0;
@@ -37,7 +38,7 @@ struct Grid {
                  static_cast<std::int64_t>(std::floor((r[c] - low[c]) / (high[c] - low[c]) *
                                                       static_cast<double>(count(c)))),
                  0, count(c) - 1);
-    return static_cast<std::size_t>(cell);
+    return index(cell);
   }
   /// Steps of a cell's index along c, and its place there.
   std::int64_t stride(int c) const {

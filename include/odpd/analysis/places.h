@@ -1,6 +1,7 @@
 #pragma once
 // The molecular virial: forces on the constituents of a rigid body act at its centre, so that the constraint forces inside it
 // need not be known.
+#include "odpd/core/index.h"
 #include "odpd/dynamics/step_record.h"
 #include "odpd/particles/particles.h"
 
@@ -17,8 +18,7 @@ class Places {
   Vec<D> between(const PairNetwork<D>& network, std::size_t k) const {
     const Vec<D> pair = network.r[k] * network.e[k];
     if (stage_.arms.empty()) return pair;
-    return pair - arm(static_cast<std::size_t>(network.i[k])) +
-           arm(static_cast<std::size_t>(network.j[k]));
+    return pair - arm(index(network.i[k])) + arm(index(network.j[k]));
   }
 
  private:

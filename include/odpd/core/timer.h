@@ -4,6 +4,8 @@
 #include <chrono>
 #include <string_view>
 
+#include "odpd/core/index.h"
+
 namespace odpd {
 
 enum class Phase { neighbours, edges, noise, assembly, solve, sweep, measure, write, count };
@@ -13,9 +15,9 @@ std::string_view phase_name(Phase phase);
 
 /// Seconds spent per phase.
 struct PhaseSeconds {
-  std::array<double, static_cast<std::size_t>(Phase::count)> seconds{};
-  double& operator[](Phase p) { return seconds[static_cast<std::size_t>(p)]; }
-  double operator[](Phase p) const { return seconds[static_cast<std::size_t>(p)]; }
+  std::array<double, index(Phase::count)> seconds{};
+  double& operator[](Phase p) { return seconds[index(p)]; }
+  double operator[](Phase p) const { return seconds[index(p)]; }
 };
 
 /// Wall seconds since construction.

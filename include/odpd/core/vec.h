@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "odpd/core/index.h"
+
 namespace odpd {
 
 /// D Cartesian components, contiguous (an array of Vec<D> is a flat array of doubles).
@@ -12,8 +14,8 @@ template <int D>
 struct Vec {
   std::array<double, D> x{};
 
-  double& operator[](int c) { return x[static_cast<std::size_t>(c)]; }
-  double operator[](int c) const { return x[static_cast<std::size_t>(c)]; }
+  double& operator[](int c) { return x[index(c)]; }
+  double operator[](int c) const { return x[index(c)]; }
 
   Vec& operator+=(const Vec& b) {
     for (int c = 0; c < D; ++c) (*this)[c] += b[c];

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "odpd/core/index.h"
 #include "odpd/core/vec.h"
 
 namespace odpd {
@@ -27,12 +28,12 @@ struct Shear {
 template <int D>
 struct Box {
   Vec<D> size{};
-  std::array<bool, static_cast<std::size_t>(D)> periodic{};
+  std::array<bool, index(D)> periodic{};
   std::optional<Shear> shear{};  ///< both of its directions are periodic
   double offset = 0.0;   ///< displacement of the image one box up, within half a box (length)
   double sliding = 0.0;  ///< velocity of that image (length/time)
 
-  bool is_periodic(int c) const { return periodic[static_cast<std::size_t>(c)]; }
+  bool is_periodic(int c) const { return periodic[index(c)]; }
   int periodic_directions() const {
     int n = 0;
     for (bool p : periodic) n += p ? 1 : 0;
@@ -93,18 +94,18 @@ struct Box {
   /// Moves r into the box along periodic directions; image counts the crossings, so that r + image * size stays where it
   /// was. With shear not so along the flow: what crosses along the gradient also moves by the offset (and its velocity
   /// changes by `sliding`).
-  void wrap(Vec<D>& r, std::array<std::int32_t, static_cast<std::size_t>(D)>& image) const {
+  void wrap(Vec<D>& r, std::array<std::int32_t, index(D)>& image) const {
     if (shear) {
-      auto& up = image[static_cast<std::size_t>(shear->gradient)];
+      auto& up = image[index(shear->gradient)];
       const std::int32_t before = up;
       wrap_along(shear->gradient, r, up);
       r[shear->flow] -= (up - before) * offset;
     }
     for (int c = 0; c < D; ++c)
-      if (is_periodic(c)) wrap_along(c, r, image[static_cast<std::size_t>(c)]);
+      if (is_periodic(c)) wrap_along(c, r, image[index(c)]);
   }
   void wrap(Vec<D>& r) const {
-    std::array<std::int32_t, static_cast<std::size_t>(D)> unused{};
+    std::array<std::int32_t, index(D)> unused{};
     wrap(r, unused);
   }
 

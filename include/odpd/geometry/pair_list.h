@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "odpd/core/index.h"
 #include "odpd/geometry/box.h"
 
 namespace odpd {
@@ -30,17 +31,17 @@ class CellList {
   /// The cell and its neighbours, each once, also where the box is one or two cells wide.
   void neighbourhood(std::int64_t cell, std::vector<std::int64_t>& out) const;
   /// Cells along each direction; a cell's number is x + count[0] (y + count[1] z).
-  const std::array<std::int64_t, static_cast<std::size_t>(D)>& count() const { return count_; }
+  const std::array<std::int64_t, index(D)>& count() const { return count_; }
   /// All particles, cell after cell, and where each cell begins in them.
   std::span<const std::int32_t> sorted() const { return member_; }
-  std::int32_t begin_of(std::int64_t cell) const { return start_[static_cast<std::size_t>(cell)]; }
+  std::int32_t begin_of(std::int64_t cell) const { return start_[index(cell)]; }
 
  private:
   void choose_cells(double width, std::size_t particles);
 
   Box<D> box_;
-  std::array<std::int64_t, static_cast<std::size_t>(D)> count_{};
-  std::array<double, static_cast<std::size_t>(D)> per_length_{};  // cells per length
+  std::array<std::int64_t, index(D)> count_{};
+  std::array<double, index(D)> per_length_{};  // cells per length
   std::int64_t cell_count_ = 1;
   std::vector<std::int32_t> start_, member_;
   std::vector<std::int32_t> cell_, next_;  // of each particle; free places of each thread and cell
@@ -70,9 +71,8 @@ class PairList {
   std::int64_t rows() const { return static_cast<std::int64_t>(row_.size()); }
   std::int64_t pairs() const { return pairs_; }
   std::span<const std::int32_t> partners(std::int64_t row) const {
-    const Row& r = row_[static_cast<std::size_t>(row)];
-    return {found_[static_cast<std::size_t>(r.chunk)].data() + r.begin,
-            static_cast<std::size_t>(r.length)};
+    const Row& r = row_[index(row)];
+    return {found_[index(r.chunk)].data() + r.begin, index(r.length)};
   }
   std::int64_t rebuilds() const { return rebuilds_; }
 
@@ -93,8 +93,8 @@ class PairList {
   std::int64_t updates_ = 0;       // since the last rebuild
   std::int64_t rebuilds_ = 0;
   CellList<D> cells_;
-  std::array<std::vector<double>, static_cast<std::size_t>(D)> x_;  // in the order of the cells
-  std::vector<std::int32_t> index_;                                 // place in memory, likewise
+  std::array<std::vector<double>, index(D)> x_;  // in the order of the cells
+  std::vector<std::int32_t> index_;              // place in memory, likewise
   std::vector<Row> row_;
   std::vector<std::vector<std::int32_t>> found_;  // rows of a chunk of cells
   std::vector<std::int64_t> found_pairs_;

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "odpd/core/index.h"
 #include "odpd/core/vec.h"
 #include "odpd/operator/node_map.h"
 #include "odpd/operator/translations.h"
@@ -42,9 +43,7 @@ class DofMap {
   /// Constituents of body b, of known motion or not, as places in memory.
   std::span<const std::int32_t> constituents(std::size_t b) const { return body_[b]; }
   /// Node of V of body b; that of its w is b.
-  std::size_t body_node(std::size_t b) const {
-    return unknown_ + static_cast<std::size_t>(free_.nodes()) + b;
-  }
+  std::size_t body_node(std::size_t b) const { return unknown_ + index(free_.nodes()) + b; }
 
   // `arms`: one per particle, zero but for constituents; empty where there are no bodies.
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "odpd/core/index.h"
 #include "odpd/pairs/network.h"
 
 namespace odpd {
@@ -57,7 +58,7 @@ void add_bond_springs(const PairNetwork<D>& network, std::span<const Vec<D>> vel
 /// blocks[p] += sum over edges of p of Z = zeta_par e e^T + zeta_perp (I - e e^T), row-major.
 template <int D>
 void add_friction_blocks(const PairNetwork<D>& network,
-                         std::vector<std::array<double, static_cast<std::size_t>(D* D)>>& blocks);
+                         std::vector<std::array<double, index(D* D)>>& blocks);
 
 /// laplacian[p] += sum over edges of k_c - (D - 1) f_c / r and what bonds have beyond, and for free particles that of the
 /// densities: the Laplacian of U in r_p without that of external potentials.

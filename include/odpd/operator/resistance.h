@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "odpd/core/index.h"
 #include "odpd/geometry/box.h"
 #include "odpd/operator/dof_map.h"
 #include "odpd/operator/system.h"
@@ -19,7 +20,7 @@ namespace odpd {
 template <int D>
 class Resistance : public System {
  public:
-  using Block = std::array<double, static_cast<std::size_t>(D* D)>;  ///< row-major
+  using Block = std::array<double, index(D* D)>;  ///< row-major
   /// An edge as one of its two free particles sees it.
   struct Link {
     std::int32_t edge = 0;  ///< of the network
@@ -62,15 +63,12 @@ class Resistance : public System {
 
   /// The rows: a node's links, in the order of the edges; both ends of an edge have one.
   std::span<const Link> links(std::size_t node) const {
-    const auto begin = static_cast<std::size_t>(start_[node]);
-    return std::span<const Link>(links_).subspan(
-        begin, static_cast<std::size_t>(start_[node + 1]) - begin);
+    const auto begin = index(start_[node]);
+    return std::span<const Link>(links_).subspan(begin, index(start_[node + 1]) - begin);
   }
   /// g = sqrt(|zeta_par - zeta_perp|) e of an edge.
-  const Vec<D>& g(const Link& link) const { return g_[static_cast<std::size_t>(link.edge)]; }
-  const Across& across(const Link& link) const {
-    return across_[static_cast<std::size_t>(link.edge)];
-  }
+  const Vec<D>& g(const Link& link) const { return g_[index(link.edge)]; }
+  const Across& across(const Link& link) const { return across_[index(link.edge)]; }
   /// Of all edges of the network; friction across e may be empty.
   std::span<const Vec<D>> g() const { return g_; }
   std::span<const Across> across() const { return across_; }

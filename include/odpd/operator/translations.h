@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "odpd/core/index.h"
+
 namespace odpd {
 
 struct Translations {
@@ -17,9 +19,7 @@ struct Translations {
   int components = 1;      ///< the last ones of a node
 
   /// First of the translated unknowns of node n of these, in the part of `x` that belongs to them.
-  std::size_t first(std::int64_t n) const {
-    return static_cast<std::size_t>(n * block + block - components);
-  }
+  std::size_t first(std::int64_t n) const { return index(n * block + block - components); }
   /// Node by node, in order.
   std::vector<double> sums(std::span<const double> x) const;
   /// a: `components` numbers.
@@ -28,9 +28,7 @@ struct Translations {
   void remove_mean(std::span<double> x) const;
 
  private:
-  std::size_t in_front(std::size_t size) const {
-    return size - static_cast<std::size_t>(nodes * block);
-  }
+  std::size_t in_front(std::size_t size) const { return size - index(nodes * block); }
 };
 
 }  // namespace odpd

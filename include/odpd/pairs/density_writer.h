@@ -1,6 +1,7 @@
 #pragma once
 // The edges of a model with densities (pairs/densities.h), in three phases: their geometry; d of each particle, a sum over all
 // its partners; their terms, for which d is known at both ends. No phase begins before the last is done with all particles.
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/pairs/edge_writer.h"
 
@@ -24,19 +25,18 @@ void sum_densities(const Functions& functions, double cutoff, const PairList<D>&
                    const Box<D>& box, std::span<const Vec<D>> positions,
                    const Particles<D>& particles, PairNetwork<D>& network) {
   DensityColumns& columns = network.densities;
-  const auto particle_count = static_cast<std::size_t>(network.particles);
+  const auto particle_count = index(network.particles);
   columns.d.resize(particle_count);
   parallel_for(network.particles, [&](std::int64_t particle) {
-    const auto i = static_cast<std::size_t>(particle);
+    const auto i = index(particle);
     columns.d[i] = functions.self(site_of(particles, i));
   });
   const auto add = [&](const PairNetwork<D>& pairs) {
-    columns.resize(particle_count, static_cast<std::size_t>(pairs.size()));
+    columns.resize(particle_count, index(pairs.size()));
     parallel_for(pairs.size(), [&](std::int64_t edge) {
-      const auto k = static_cast<std::size_t>(edge);
-      const Derivatives w =
-          functions.weight(pairs.r[k], site_of(particles, static_cast<std::size_t>(pairs.i[k])),
-                           site_of(particles, static_cast<std::size_t>(pairs.j[k])));
+      const auto k = index(edge);
+      const Derivatives w = functions.weight(pairs.r[k], site_of(particles, index(pairs.i[k])),
+                                             site_of(particles, index(pairs.j[k])));
       columns.W[k] = w.value;
       columns.W_1[k] = w.first;
     });
@@ -48,7 +48,7 @@ void sum_densities(const Functions& functions, double cutoff, const PairList<D>&
   add(network);
   // Between the phases: here ranks would fetch d of the particles that others own.
   parallel_for(network.particles, [&](std::int64_t particle) {
-    const auto i = static_cast<std::size_t>(particle);
+    const auto i = index(particle);
     const Derivatives psi = functions.energy(site_of(particles, i, columns.d[i]));
     columns.psi[i] = psi.value;
     columns.psi_1[i] = psi.first;
@@ -73,11 +73,9 @@ void write_density_edges(const Functions& functions, const Terms& terms, double 
   constexpr std::int64_t at_a_time = 256;
   parallel_ranges(network.size(), at_a_time, [&](std::int64_t begin, std::int64_t end) {
     const auto k_c = network.k_c.each();
-    fill_terms(terms, site, static_cast<std::size_t>(begin), static_cast<std::size_t>(end),
-               network);
-    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
-      const auto i = static_cast<std::size_t>(network.i[k]),
-                 j = static_cast<std::size_t>(network.j[k]);
+    fill_terms(terms, site, index(begin), index(end), network);
+    for (auto k = index(begin); k < index(end); ++k) {
+      const auto i = index(network.i[k]), j = index(network.j[k]);
       const double slope = columns.psi_1[i] + columns.psi_1[j];
       network.f_c[k] -= slope * columns.W_1[k];
       k_c[k] += slope * functions.weight(network.r[k], site(i), site(j)).second;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "odpd/core/index.h"
 #include "odpd/pairs/calibration.h"
 #include "odpd/pairs/pair_model.h"
 #include "odpd/pairs/physical_inputs.h"
@@ -61,7 +62,7 @@ class DpdModel : public PairModel<D> {
     Friction friction;
   };
   const Entry& entry(Site site_i, Site site_j) const {
-    return table_[static_cast<std::size_t>(site_i.species * species_ + site_j.species)];
+    return table_[index(site_i.species * species_ + site_j.species)];
   }
   PairTerms terms(double r, Site site_i, Site site_j) const;
 
@@ -76,7 +77,7 @@ class DpdModel : public PairModel<D> {
 /// The same parameters for all pairs of species, as scenes hold it.
 template <int D>
 std::shared_ptr<const DpdModel<D>> make_dpd(const DpdParameters& p, int species = 1) {
-  const auto n = static_cast<std::size_t>(species);
+  const auto n = index(species);
   return std::make_shared<const DpdModel<D>>(species, std::vector<DpdParameters>(n * n, p));
 }
 

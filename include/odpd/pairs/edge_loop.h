@@ -1,6 +1,7 @@
 #pragma once
 // Loops over all edges, in which each thread writes to particles of its own. Edges are read as they lie in memory, and every
 // particle meets its own in ascending order: the same bits on any number of threads.
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/pairs/network.h"
 
@@ -19,13 +20,12 @@ void for_each_owned_edge(const PairNetwork<D>& network, const Incoming& incoming
     // Rows are ascending: one of an earlier particle matters if its last partner is at least `begin`.
     for (std::int64_t p = 0; p < begin; ++p) {
       for (std::int64_t e = first[p + 1] - 1; e >= first[p] && j[e] >= begin; --e)
-        if (j[e] < end) incoming(static_cast<std::size_t>(j[e]), static_cast<std::size_t>(e));
+        if (j[e] < end) incoming(index(j[e]), index(e));
     }
     for (std::int64_t p = begin; p < end; ++p) {
       for (std::int64_t e = first[p]; e < first[p + 1] && j[e] < end; ++e)
-        incoming(static_cast<std::size_t>(j[e]), static_cast<std::size_t>(e));
-      row(static_cast<std::size_t>(p), static_cast<std::size_t>(first[p]),
-          static_cast<std::size_t>(first[p + 1]));
+        incoming(index(j[e]), index(e));
+      row(index(p), index(first[p]), index(first[p + 1]));
     }
   };
 #ifdef _OPENMP

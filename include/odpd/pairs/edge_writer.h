@@ -2,6 +2,7 @@
 // The loop every pair model shares: pair list -> edges, in parallel, in an order fixed by the list alone.
 #include <functional>
 
+#include "odpd/core/index.h"
 #include "odpd/core/random.h"
 #include "odpd/pairs/pair_model.h"
 
@@ -14,7 +15,7 @@ Vec<D> overlap_direction(std::int64_t id_i, std::int64_t id_j) {
   const auto high = static_cast<std::uint64_t>(std::max(id_i, id_j));
   const auto normal = CounterRandom(0, Stream::overlap_direction).normals(0, 0, low, high);
   Vec<D> e;
-  for (int c = 0; c < D; ++c) e[c] = normal[static_cast<std::size_t>(c)];
+  for (int c = 0; c < D; ++c) e[c] = normal[index(c)];
   return (id_i < id_j ? 1.0 : -1.0) / norm(e) * e;
 }
 
@@ -34,8 +35,7 @@ void fill_terms(const Terms& terms, const SiteOf& site, std::size_t begin, std::
                 PairNetwork<D>& n) {
   const auto u = n.u.each(), k_c = n.k_c.each(), zeta_perp = n.zeta_perp.each(), kT = n.kT.each();
   for (std::size_t k = begin; k < end; ++k) {
-    const PairTerms t = terms(n.r[k], site(static_cast<std::size_t>(n.i[k])),
-                              site(static_cast<std::size_t>(n.j[k])));
+    const PairTerms t = terms(n.r[k], site(index(n.i[k])), site(index(n.j[k])));
     u[k] = t.u;
     n.f_c[k] = t.f_c;
     k_c[k] = t.k_c;

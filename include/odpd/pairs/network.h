@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "odpd/core/index.h"
 #include "odpd/core/vec.h"
 #include "odpd/pairs/column.h"
 
@@ -67,22 +68,21 @@ struct PairNetwork {
   std::int64_t size() const { return static_cast<std::int64_t>(i.size()); }
   std::int64_t pairs() const { return size() - bonds; }
   std::span<const std::int32_t> edges_of(std::int64_t particle) const {
-    const auto b = static_cast<std::size_t>(start[static_cast<std::size_t>(particle)]);
-    const auto n = static_cast<std::size_t>(start[static_cast<std::size_t>(particle) + 1]) - b;
+    const auto b = index(start[index(particle)]);
+    const auto n = index(start[index(particle) + 1]) - b;
     return std::span<const std::int32_t>(edge).subspan(b, n);
   }
   /// Energy of all edges and of all densities.
   double energy() const;
   /// Conservative force on i of edge k.
   Vec<D> push(std::size_t k) const {
-    const auto first_bond = static_cast<std::size_t>(pairs());
+    const auto first_bond = index(pairs());
     const Vec<D> along = f_c[k] * e[k];
     return beyond.empty() || k < first_bond ? along : along + beyond[k - first_bond].force;
   }
   /// What friction sees on edge k where the particles have these velocities.
   Vec<D> slip(std::size_t k, std::span<const Vec<D>> velocity) const {
-    const Vec<D> v =
-        velocity[static_cast<std::size_t>(i[k])] - velocity[static_cast<std::size_t>(j[k])];
+    const Vec<D> v = velocity[index(i[k])] - velocity[index(j[k])];
     return slip_0.empty() ? v : v + slip_0[k];
   }
   /// None of them is a bond at first.

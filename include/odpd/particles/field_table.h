@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "odpd/core/archive.h"
+#include "odpd/core/index.h"
 #include "odpd/core/vec.h"
 
 namespace odpd {
@@ -14,7 +15,7 @@ namespace odpd {
 template <int D>
 class FieldTable {
  public:
-  using Integers = std::array<std::int32_t, static_cast<std::size_t>(D)>;
+  using Integers = std::array<std::int32_t, index(D)>;
   using Column = std::variant<std::vector<Vec<D>>*, std::vector<Integers>*, std::vector<double>*,
                               std::vector<std::int32_t>*, std::vector<std::int64_t>*>;
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "odpd/core/archive.h"
+#include "odpd/core/index.h"
 #include "odpd/core/vec.h"
 #include "odpd/particles/field_table.h"
 #include "odpd/particles/rigid_body.h"
@@ -15,7 +16,7 @@ namespace odpd {
 template <int D>
 class Particles {
  public:
-  using Image = std::array<std::int32_t, static_cast<std::size_t>(D)>;
+  using Image = std::array<std::int32_t, index(D)>;
 
   Particles();
   Particles(const Particles&) = delete;  // the field table points into this object
@@ -49,7 +50,7 @@ class Particles {
   /// together with its body's centre in the box. Boxes are counted from the same origin as `image`.
   const Image& moving_image(std::size_t i) const {
     const std::int32_t body = body_of(i);
-    return body < 0 ? image[i] : bodies[static_cast<std::size_t>(body)].pose.image;
+    return body < 0 ? image[i] : bodies[index(body)].pose.image;
   }
 
   /// From now on `end_velocity` has an entry per particle, at first zero, and is state like the other fields.

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "odpd/core/index.h"
 #include "odpd/core/rotation.h"
 #include "odpd/geometry/box.h"
 
@@ -30,7 +31,7 @@ struct RigidLoad {
 /// Where a body is.
 template <int D>
 struct RigidPose {
-  using Image = std::array<std::int32_t, static_cast<std::size_t>(D)>;
+  using Image = std::array<std::int32_t, index(D)>;
   Vec<D> centre{};          ///< X, inside the box along periodic directions
   Image image{};            ///< box crossings of X
   Rotation<D> orientation;  ///< Q

@@ -1,7 +1,5 @@
 #pragma once
 // The makers behind the name table of make_solver (solver.h).
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 
 #include "odpd/solvers/solver.h"
@@ -15,9 +13,6 @@ std::unique_ptr<Solver> make_eigen_cg(const SolverOptions& options);
 std::unique_ptr<Solver> make_cholmod(const SolverOptions& options);
 /// Defined only in a build with PETSc.
 std::unique_ptr<Solver> make_petsc(const SolverOptions& options);
-
-/// Position of component i in a vector.
-inline std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// What every backend says of an indefinite matrix.
 inline constexpr const char* not_definite =

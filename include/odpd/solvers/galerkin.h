@@ -6,6 +6,7 @@
 // which is exact for velocities linear in space and keeps the stencil at 3^D points; all edges of a particle share one
 // gradient, so that they are added up before the cell sees them. Friction with particles of known velocity and the shift act
 // at the particle's own position.
+#include "odpd/core/index.h"
 #include "odpd/solvers/multigrid.h"
 
 namespace odpd {
@@ -14,7 +15,7 @@ namespace odpd {
 template <int D>
 struct GridPosition {
   typename GridShape<D>::Index cell;
-  std::array<float, static_cast<std::size_t>(D)> in_cell;
+  std::array<float, index(D)> in_cell;
 };
 
 /// A node's position as the grid sees it: along the edges of the cell that a shear has tilted, so that the grid is tilted

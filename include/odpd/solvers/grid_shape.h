@@ -9,13 +9,14 @@
 #include <cstdint>
 #include <span>
 
+#include "odpd/core/index.h"
 #include "odpd/geometry/box.h"
 
 namespace odpd {
 
 template <int D>
 struct GridShape {
-  using Index = std::array<std::int64_t, static_cast<std::size_t>(D)>;
+  using Index = std::array<std::int64_t, index(D)>;
   static constexpr int corners = 1 << D;            ///< of a cell
   static constexpr int entries = D == 2 ? 9 : 27;   ///< of a stencil
   static constexpr int triangle = D * (D + 1) / 2;  ///< of a symmetric D x D block
@@ -24,11 +25,11 @@ struct GridShape {
   Vec<D> length{};      ///< cells times spacing
   Index cells{};        ///< per direction
   Vec<D> per_length{};  ///< cells / length
-  std::array<bool, static_cast<std::size_t>(D)> periodic{};
+  std::array<bool, index(D)> periodic{};
 
   GridShape() = default;
   GridShape(const Vec<D>& origin, const Vec<D>& lengths, const Index& cells_per_direction,
-            const std::array<bool, static_cast<std::size_t>(D)>& is_periodic);
+            const std::array<bool, index(D)>& is_periodic);
 
   std::int64_t points(int c) const { return cells[at(c)] + (periodic[at(c)] ? 0 : 1); }
   std::int64_t points() const;
@@ -51,7 +52,7 @@ struct GridShape {
   bool coarsened(int c) const { return cells[at(c)] % 2 == 0; }
 
  private:
-  static std::size_t at(int c) { return static_cast<std::size_t>(c); }
+  static std::size_t at(int c) { return index(c); }
   Index stride_{};
   std::int64_t total_ = 0, margin_ = 0, origin_ = 0;
 };
@@ -69,7 +70,7 @@ void for_each_point(const GridShape<D>& shape, const F& f) {
   for (std::int64_t k = 0; k < n; ++k) {
     f(point);
     for (int c = 0; c < D; ++c) {
-      auto& x = point[static_cast<std::size_t>(c)];
+      auto& x = point[index(c)];
       if (++x < shape.points(c)) break;
       x = 0;
     }
