@@ -129,8 +129,7 @@ std::string BlowUpWatch<D>::judge_temperatures(const Stage<D>& stage, const Pair
   if (!sound && ordered_)
     return fmt::format(
         "the configurational temperature {} (kT = {}, run.blow_up = {}): the particles lie as if "
-        "thrown "
-        "there at random",
+        "thrown there at random",
         curvature > 0.0
             ? fmt::format("is {:.3g}", square / curvature)
             : std::string("has no value, as the mean curvature of the energy is negative"),

@@ -204,8 +204,7 @@ void require_printed() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
   throw odpd::IoError(
       "standard output cannot be written: free some space, or send it elsewhere; the files of a "
-      "run "
-      "are complete");
+      "run are complete");
 }
 
 }  // namespace
@@ -221,8 +220,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     std::fputs(
         "odpd: error: not enough memory for this case: odpd run --dry-run tells what it needs; "
-        "fewer "
-        "particles (fluid.density, fluid.count, box.size) need less\n",
+        "fewer particles (fluid.density, fluid.count, box.size) need less\n",
         stderr);
     return 2;
   } catch (const std::system_error& e) {

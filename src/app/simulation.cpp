@@ -172,9 +172,8 @@ const StepRecord<D>& Simulation<D>::step() {
     alarmed_ = true;
     log_warning(fmt::format(
         "step {}: {} particle(s) crossed a wall and were caught by the mirror behind it; checks "
-        "fail "
-        "when that happens while they measure. Use denser layers, a higher wall.stiffness or a "
-        "smaller integrator.dt",
+        "fail when that happens while they measure. Use denser layers, a higher wall.stiffness "
+        "or a smaller integrator.dt",
         record.step, record.alarm_crossings));
   }
   if (clock_.measuring()) alarm_crossings_ += record.alarm_crossings;

@@ -177,12 +177,9 @@ void Resistance<D>::check_rattlers(const PairNetwork<D>& network, const DofMap<D
     throw SolverError(
         fmt::format(
             "particle {} is a rattler: its {} neighbour(s) within the cutoff leave it free to move "
-            "in "
-            "some direction "
-            "without friction, so R is singular. Cures: a weak pairwise friction of longer range "
-            "(fluid.rattler_friction = {{ gamma = 0.1, cutoff = 2.0 }}), a higher density, or a "
-            "larger "
-            "cutoff",
+            "in some direction without friction, so R is singular. Cures: a weak pairwise friction "
+            "of longer range (fluid.rattler_friction = {{ gamma = 0.1, cutoff = 2.0 }}), a higher "
+            "density, or a larger cutoff",
             particles.id[index(particle)], network.edges_of(particle).size()),
         SolverError::Cause::singular);
   }

@@ -350,8 +350,7 @@ Solver::Attempt PetscSolver::outcome() {
   } else if (reason == KSP_DIVERGED_INDEFINITE_PC) {
     result.failure = fmt::format(
         "the preconditioner is not positive definite, perhaps because the matrix is not: {}, or "
-        "add "
-        "-pc_factor_shift_type positive_definite",
+        "add -pc_factor_shift_type positive_definite",
         remedy);
   } else if (!result.ok && reason != KSP_DIVERGED_ITS) {
     const char* detail = cause > PC_NOERROR ? PCFailedReasons[cause] : "no cause given";

@@ -75,8 +75,7 @@ void reject_block(std::int64_t node) {
       fmt::format(
           "node {} is not held: its diagonal block is not positive definite (fewer independent "
           "neighbours than directions, or a negative weight); give the particles mass, or add a "
-          "weak "
-          "pairwise friction of longer range",
+          "weak pairwise friction of longer range",
           node),
       SolverError::Cause::singular);
 }

@@ -41,8 +41,8 @@ struct ObserverEntry {
   const Config& config;
   const Scene<D>& scene;  ///< outlives the observer
   const Clock& clock;
-  bool in_time =
-      true;  ///< steps are steps in time; otherwise (Monte Carlo) there are no velocities
+  /// Steps are steps in time; otherwise (Monte Carlo) there are no velocities.
+  bool in_time = true;
 
   /// Reads the keys of every observer: name, every, series, from, until. Throws ConfigError.
   ObserverSettings settings(std::int64_t default_every = 1) const;

@@ -15,8 +15,8 @@ struct ObserverKind {
   std::string name;
   /// Reads the kind's keys. Throws ConfigError.
   std::function<std::unique_ptr<Observer<D>>(const ObserverEntry<D>&)> make;
-  bool of_motion =
-      false;  ///< measures by velocities or time: left out, with a warning, of Monte Carlo
+  /// Measures by velocities or time: left out, with a warning, of Monte Carlo.
+  bool of_motion = false;
   bool always = false;  ///< every run has one, with its defaults where the case names none
 };
 

@@ -14,8 +14,8 @@ struct Scalar {
   std::string name;
   double mean = std::numeric_limits<double>::quiet_NaN();
   double standard_error = std::numeric_limits<double>::quiet_NaN();
-  bool has_error =
-      true;  ///< false: it never has a standard error, as a count or the largest of many
+  /// False: it never has a standard error, as a count or the largest of many.
+  bool has_error = true;
 };
 
 /// One of the latter.

@@ -6,8 +6,8 @@ namespace odpd {
 
 struct StudyOptions {
   std::filesystem::path study_path;
-  std::filesystem::path
-      out;  ///< empty: runs/study-<name>, of the quick form runs/study-<name>-quick
+  /// Empty: runs/study-<name>, of the quick form runs/study-<name>-quick.
+  std::filesystem::path out;
   bool quick = false;
   bool dry_run = false;  ///< lists the points with an estimate of the time
   int threads = 1;

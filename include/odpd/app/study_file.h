@@ -33,8 +33,8 @@ struct AxisMatch {
 enum class ReferenceKind { number, monte_carlo, point };
 
 struct StudyObservable {
-  std::string
-      name;  ///< as in a [[check]]; "<table>.rms": rms difference of a table's second column
+  /// As in a [[check]]; "<table>.rms": rms difference of a table's second column.
+  std::string name;
   std::string table;  ///< file stem, for ".rms"
   double below =
       std::numeric_limits<double>::infinity();  ///< of a table: rows whose first column is less

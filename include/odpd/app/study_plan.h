@@ -21,8 +21,8 @@ struct StudyRun {
 };
 
 struct StudyPoint {
-  std::vector<std::size_t>
-      at;  ///< index along each axis; of a Monte Carlo point those of the first point it serves
+  /// Index along each axis; of a Monte Carlo point those of the first point it serves.
+  std::vector<std::size_t> at;
   std::string label;
   bool monte_carlo = false;
   std::vector<StudyRun> runs;  ///< one per seed

@@ -15,8 +15,8 @@ struct FluidKeys {
     std::size_t a, b;
   };
 
-  Config
-      fluid;  ///< [fluid], less the keys that are of every model (density, count, mass, zeta_0, ...)
+  /// [fluid], less the keys that are of every model (density, count, mass, zeta_0, ...).
+  Config fluid;
   std::vector<Pair> pairs;
   std::size_t species = 1;  ///< how many
   double density = 0.0;  ///< of the fluid's particles (1/length^d); 0: a start file tells it later

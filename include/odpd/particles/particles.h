@@ -28,8 +28,8 @@ class Particles {
   /// v' at the end of the last step, whose variance is kT/m; empty unless carry_inertia was called; length/time. Of
   /// constituents that of `moving_image`.
   std::vector<Vec<D>> end_velocity;
-  std::vector<std::int64_t>
-      id;  ///< persistent identity, 0, 1, ...; survives reordering and restart
+  /// Persistent identity, 0, 1, ...; survives reordering and restart.
+  std::vector<std::int64_t> id;
   std::vector<std::int32_t> species;  ///< index into the scene's species
   /// 0: free (fluid); k >= 1: known velocity, of wall k-1 of the scene or, above `walls`, of body k-1-walls;
   /// -(k+1): constituent of body k, whose motion is unknown

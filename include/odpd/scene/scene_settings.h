@@ -74,8 +74,8 @@ struct SceneSettings {
   std::vector<MoleculeSettings<D>> molecules;
   std::string bonds_file;    ///< of [bonds], resolved; empty: none
   BondParameters file_bond;  ///< of its bonds, where the file does not say
-  std::vector<Bond>
-      start_bonds;      ///< contents of that file, particles of the start file counted from 0
+  /// Contents of that file, particles of the start file counted from 0.
+  std::vector<Bond> start_bonds;
   Vec<D> body_force{};  ///< on every particle that moves, or amplitude of the wave (force)
   ForceWave force_wave;
   std::vector<ForceRegion<D>> force_regions;

@@ -17,7 +17,6 @@ std::unique_ptr<Solver> make_petsc(const SolverOptions& options);
 /// What every backend says of an indefinite matrix.
 inline constexpr const char* not_definite =
     "the matrix is not positive definite: check friction weights, masses and stiffness for "
-    "negative "
-    "values, and that every particle is held by enough neighbours";
+    "negative values, and that every particle is held by enough neighbours";
 
 }  // namespace odpd

@@ -10,9 +10,9 @@
 //   2 D - A = sum_edges g g^T on v_i + v_j (and what holds a node) >= 0,
 //
 // so the local part, two or four steps of block-Jacobi, is definite. (T_4: Chebyshev's polynomial, small for 0.1 < L < 2.)
-// It serves clusters of strongly bound particles
-// that move together against weak ties: D alone takes them to be as stiff as the ties inside. The grid stands still while
-// the particles move, so its operator ages slowly: it is kept until convergence has slowed down (`note_rate`).
+// It serves clusters of strongly bound particles that move together against weak ties: D alone takes them to be as stiff as
+// the ties inside. The grid stands still while the particles move, so its operator ages slowly: it is kept until convergence
+// has slowed down (`note_rate`).
 #include <cstdint>
 #include <span>
 #include <vector>
