@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/analysis/fluid_region.h"
 #include "odpd/analysis/observer_keys.h"
 #include "odpd/analysis/places.h"
 #include "odpd/core/index.h"
@@ -19,15 +20,13 @@ template <int D>
 class StressGrid {
  public:
   StressGrid(const Scene<D>& scene, const StressBins& bins)
-      : box_(scene.box()), low_(scene.fluid_low()), high_(scene.fluid_high()), bins_(bins) {}
+      : box_(scene.box()), region_(scene), bins_(bins) {}
 
   std::size_t width() const { return (stress_parts + index(bins_.bins)) * D * D; }
   // a (x) b on the line from r to r - arm (r inside the box, arm to the nearest image).
   void add_line(StressPart part, const Vec<D>& r, const Vec<D>& arm, const Vec<D>& a,
                 const Vec<D>& b, double* sum) const {
-    double from = 0.0, to = 1.0;
-    for (int c = 0; c < D; ++c)
-      if (!box_.is_periodic(c)) clip(r[c], -arm[c], c, from, to);
+    const auto [from, to] = region_.inside(r, arm);
     if (!(to > from)) return;
     add(part * D * D, to - from, a, b, sum);
     if (bins_.bins == 0) return;
@@ -46,32 +45,20 @@ class StressGrid {
   // a (x) b at r.
   void add_point(StressPart part, const Vec<D>& r, const Vec<D>& a, const Vec<D>& b,
                  double* sum) const {
-    for (int c = 0; c < D; ++c)
-      if (!box_.is_periodic(c) && (r[c] < low_[c] || r[c] > high_[c])) return;
+    if (!region_.holds(r)) return;
     add(part * D * D, 1.0, a, b, sum);
     if (bins_.bins > 0) add(bin_at(std::floor(scaled(r))), 1.0, a, b, sum);
   }
 
  private:
-  // The part of r + s step, s in [from, to], between the surfaces along c.
-  void clip(double r, double step, int c, double& from, double& to) const {
-    if (step == 0.0) {
-      if (r < low_[c] || r > high_[c]) to = from;
-      return;
-    }
-    const double s = (low_[c] - r) / step, t = (high_[c] - r) / step;
-    from = std::max(from, std::min(s, t));
-    to = std::min(to, std::max(s, t));
-  }
   // Coordinate along the axis in bins.
   double slope(const Vec<D>& arm) const {
-    return arm[bins_.axis] / (high_[bins_.axis] - low_[bins_.axis]) *
-           static_cast<double>(bins_.bins);
+    return arm[bins_.axis] / extent() * static_cast<double>(bins_.bins);
   }
   double scaled(const Vec<D>& r) const {
-    return (r[bins_.axis] - low_[bins_.axis]) / (high_[bins_.axis] - low_[bins_.axis]) *
-           static_cast<double>(bins_.bins);
+    return (r[bins_.axis] - region_.low()[bins_.axis]) / extent() * static_cast<double>(bins_.bins);
   }
+  double extent() const { return region_.high()[bins_.axis] - region_.low()[bins_.axis]; }
   // Lines leave the box by periodic images; rounding may put the end of a clipped one outside.
   std::size_t bin_at(double bin) const {
     auto b = static_cast<std::int64_t>(bin);
@@ -85,7 +72,7 @@ class StressGrid {
   }
 
   const Box<D>& box_;
-  Vec<D> low_, high_;
+  FluidRegion<D> region_;
   StressBins bins_;
 };
 

@@ -1,8 +1,8 @@
 #include "odpd/analysis/thermo.h"
 
-#include <algorithm>
 #include <cmath>
 
+#include "odpd/analysis/fluid_region.h"
 #include "odpd/analysis/places.h"
 #include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
@@ -44,6 +44,22 @@ double kinetic_temperature(const Scene<D>& scene, const Particles<D>& particles,
   return mass * square / (D * (conserved ? n - 1.0 : n));
 }
 
+namespace {
+
+// Free particles and bodies of unknown motion, each of these one particle at its centre, between the wall surfaces.
+template <int D>
+double centres_inside(const Particles<D>& particles, const Places<D>& places,
+                      const FluidRegion<D>& region) {
+  double count = 0.0;
+  for (std::size_t i = 0; i < particles.group.size(); ++i)
+    if (particles.is_free(i) && region.holds(places.at(i))) count += 1.0;
+  if (particles.bodies.empty()) return count;
+  const std::vector<std::int32_t> place = particles.index_of_id();
+  for (const RigidBody<D>& body : particles.bodies)
+    if (!body.known && region.holds(places.at(index(place[index(body.members[0])])))) count += 1.0;
+  return count;
+}
+
 // Velocities less those of the flow that a shear imposes.
 template <int D>
 std::vector<Vec<D>> peculiar(const Stage<D>& stage, std::vector<Vec<D>> velocity) {
@@ -51,6 +67,8 @@ std::vector<Vec<D>> peculiar(const Stage<D>& stage, std::vector<Vec<D>> velocity
     velocity[i] -= stage.box.flow_velocity(stage.position[i]);
   return velocity;
 }
+
+}  // namespace
 
 template <int D>
 Thermo<D>::Thermo(ObserverSettings settings, const Scene<D>& scene, bool in_time)
@@ -71,18 +89,15 @@ void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepR
   double wall_energy = 0.0;
   configurational_terms(scene_, particles, record.start, force_squared, laplacian, wall_energy);
   const Places<D> places(particles, record.start);
+  const FluidRegion<D> region(scene_);
   for (std::size_t k = 0; k < virial.size(); ++k) {
-    const bool known =
-        particles.is_known(index(network.i[k])) || particles.is_known(index(network.j[k]));
-    virial[k] = (known ? 0.5 : 1.0) * dot(places.between(network, k), network.push(k));
+    const Vec<D> arm = places.between(network, k);
+    const Vec<D> r = places.at(index(network.i[k]));
+    virial[k] = region.inside(r, arm).length() * dot(arm, network.push(k));
   }
-  const auto n = static_cast<double>(particles.free_count());
-  const auto bodies =
-      static_cast<double>(std::count_if(particles.bodies.begin(), particles.bodies.end(),
-                                        [](const RigidBody<D>& body) { return !body.known; }));
-  const double volume = scene_.fluid_volume();
-  this->add({(network.energy() + wall_energy) / n,
-             ((n + bodies) * scene_.largest_kT() + fixed_sum(virial) / D) / volume,
+  const double centres = centres_inside(particles, places, region);
+  this->add({(network.energy() + wall_energy) / static_cast<double>(particles.moving_count()),
+             (centres * scene_.largest_kT() + fixed_sum(virial) / D) / scene_.fluid_volume(),
              fixed_sum(force_squared), fixed_sum(laplacian),
              kinetic_temperature(scene_, particles, peculiar(record.start, record.v_start))});
 }

@@ -98,6 +98,7 @@ std::string BlowUpWatch<D>::judge_temperatures(const Stage<D>& stage, const Pair
                                                const std::vector<double>& laplacian) {
   const SceneSettings<D>& s = scene_.settings();
   const auto n = static_cast<double>(scene_.particles().free_count());
+  const auto moving = static_cast<double>(scene_.particles().moving_count());
   const double kT = scene_.largest_kT();
   if (s.mass > 0.0 && pairs.count > 0.0) {
     const double freedom = D * std::min(pairs.count, n);
@@ -118,10 +119,10 @@ std::string BlowUpWatch<D>::judge_temperatures(const Stage<D>& stage, const Pair
   if (!(force > 0.0) || !(kT > 0.0)) return {};
   double squares = 0.0;
   for (const double x : laplacian) squares += x * x;
-  const double contacts = 2.0 * static_cast<double>(stage.network.size()) / n;
+  const double contacts = 2.0 * static_cast<double>(stage.network.size()) / moving;
   const double drag =
       contacts * friction * flow_slip_ +
-      s.largest_force() * fluid_depth() * std::pow(n / scene_.fluid_volume(), 1.0 / D);
+      s.largest_force() * fluid_depth() * std::pow(moving / scene_.fluid_volume(), 1.0 / D);
   const double square = fixed_sum(force_squared), curvature = fixed_sum(laplacian);
   const double driven = n * drag * drag + load_squared_;
   const double scale = kT * (std::max(curvature, 0.0) + 3.0 * std::sqrt(squares)) + driven;
@@ -144,7 +145,7 @@ std::string BlowUpWatch<D>::judge_temperatures(const Stage<D>& stage, const Pair
 template <int D>
 std::string BlowUpWatch<D>::judge(const Stage<D>& stage, double dt) {
   const SceneSettings<D>& s = scene_.settings();
-  const auto n = static_cast<double>(scene_.particles().free_count());
+  const auto n = static_cast<double>(scene_.particles().moving_count());
   const double kT = scene_.largest_kT();
   std::vector<double> force_squared, laplacian;
   double wall_energy = 0.0;

@@ -31,6 +31,11 @@ std::int64_t Particles<D>::free_count() const {
 }
 
 template <int D>
+std::int64_t Particles<D>::moving_count() const {
+  return std::count_if(group.begin(), group.end(), [](std::int32_t g) { return g <= 0; });
+}
+
+template <int D>
 void Particles<D>::add(const Vec<D>& r, std::int32_t species_index, std::int32_t group_index) {
   const std::size_t n = position.size();
   fields_.resize(n + 1);

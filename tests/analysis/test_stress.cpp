@@ -173,6 +173,45 @@ TYPED_TEST(StressTest, AgreesWithThermoAndItsBins) {
   EXPECT_FALSE(records::results(copy).notes.empty());
 }
 
+// So they are between walls, with particles behind their surfaces, and with bodies, of which one lies across a surface.
+TEST(Stress, AgreesWithThermoBetweenWalls) {
+  auto s = records::periodic<2>(5.0, support::random_points<2>({{0.0, 0.7}}, {{5.0, 4.3}}, 60, 5));
+  records::add_walls(s, 0.0);
+  for (auto& wall : s.walls)
+    wall.layers = {{.depth = 0.0, .count = 14}, {.depth = 0.4, .count = 9}};
+  odpd::BodySettings<2> pair;
+  pair.name = "pair";
+  pair.shape = {{{-0.2, 0.0}}, {{0.2, 0.0}}};
+  pair.positions = {{{1.0, 3.9}}, {{3.0, 2.0}}};
+  pair.motion = odpd::BodyMotion::free;
+  auto obstacle = pair;
+  obstacle.name = "obstacle";
+  obstacle.motion = odpd::BodyMotion::fixed;
+  obstacle.positions = {{{2.0, 3.0}}};
+  s.bodies = {pair, obstacle};
+  s.model = odpd::make_dpd<2>({});
+  Scene<2> scene(s);
+  auto& particles = scene.particles();
+  auto record = records::record(scene);
+  record.start.arms.assign(record.start.position.size(), {});
+  for (const auto& body : particles.bodies)
+    for (const std::int64_t id : body.members) {
+      const auto i =
+          static_cast<std::size_t>(particles.index_of_id()[static_cast<std::size_t>(id)]);
+      record.start.arms[i] = scene.box().separation(record.start.position[i], body.pose.centre);
+    }
+  odpd::Thermo<2> thermo({.kind = "thermo", .name = "thermo"}, scene);
+  Stress<2> stress({.kind = "stress", .name = "s"}, {}, scene);
+  thermo.measure(Clock{}, particles, record);
+  stress.measure(Clock{}, particles, record);
+  const auto results = records::results(stress);
+  EXPECT_LT(records::mean(results, "s.pressure.kinetic"), 62.0 / 15.0)
+      << "some are behind a surface";
+  EXPECT_NEAR(records::mean(results, "s.pressure.kinetic") +
+                  records::mean(results, "s.pressure.conservative"),
+              records::mean(records::results(thermo), "pressure"), 1e-10);
+}
+
 TEST(Stress, WithMassTheVelocitiesCarryMomentum) {
   auto s = records::periodic<2>(4.0, {{{1.0, 1.0}}, {{3.0, 3.0}}});
   s.mass = 0.5;

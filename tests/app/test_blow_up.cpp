@@ -1,4 +1,5 @@
 // What is judged a blow-up: configurations and velocities made for it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,6 +82,27 @@ TYPED_TEST(BlowUp, EnergyOfParticlesPressedTogether) {
   EXPECT_EQ(watch.judge(stage_of(scene), 0.01), "");
   for (Vec<D>& r : scene.particles().position) r *= 0.1;
   EXPECT_NE(watch.judge(stage_of(scene), 0.01).find("energy per particle"), std::string::npos);
+}
+
+// What is told and judged is the energy of all that move, not of the only particle that is in no body.
+TEST(BlowUpOfBodies, EnergyIsSharedByTheirParticles) {
+  SceneSettings<2> s = box_of<2>(StartKind::file);
+  s.start_positions = {{{7.5, 7.5}}};
+  BodySettings<2> pair;
+  pair.shape = {{{-0.1, 0.0}}, {{0.1, 0.0}}};
+  pair.clearance = 0.0;
+  for (int k = 0; k < 25; ++k)
+    pair.positions.push_back({{0.5 + 1.4 * (k % 5), 0.5 + 1.4 * (k / 5)}});
+  s.bodies = {pair};
+  Scene<2> scene(s);
+  BlowUpWatch<2> watch(scene, 10.0);
+  EXPECT_EQ(watch.judge(stage_of(scene), 0.01), "");
+  for (Vec<2>& r : scene.particles().position) r *= 0.1;
+  const Stage<2> pressed = stage_of(scene);
+  const std::string why = watch.judge(pressed, 0.01);
+  EXPECT_NE(why.find(fmt::format("energy per particle, {:.4g},", pressed.network.energy() / 51.0)),
+            std::string::npos)
+      << why;
 }
 
 // Of a hard core the energy of a random arrangement diverges: the bound takes one of pairs that kT lets come near.

@@ -1,16 +1,18 @@
 #pragma once
 // Equilibrium averages from the edges at the start of each sampled step:
 //
-//   energy per particle      (sum_edges u + wall potentials) / N
-//   pressure                 n kT + (1/(d V)) sum_edges r f_c   (conservative virial; friction and noise add nothing at
-//                            equilibrium, physics of m = 0)
+//   energy per particle      (sum_edges u + wall potentials) / N, N the particles that move: free ones, and those of bodies of
+//                            unknown motion. An edge to a particle of known motion counts in full: its energy is that of the one
+//                            that moves. Edges between two of known motion there are none.
+//   pressure                 (N_V kT + (1/d) sum_edges l r f_c) / V   (conservative virial; friction and noise add nothing at
+//                            equilibrium, physics of m = 0). V: the volume between the wall surfaces; l: the part of the edge's line
+//                            inside (analysis/fluid_region.h), 1 without walls; N_V: free particles and bodies of unknown motion
+//                            there, each body one particle at its centre. As that of `stress`: its kinetic and conservative part.
 //   configurational          <sum_i |F_i|^2> / <sum_i lap_i U> over free particles, F the conservative force (wall
 //   temperature              potentials included); kT at equilibrium (Rugh 1997); not a thermometer under flow
-//   kinetic temperature      with mass only: m sum |v - V|^2 / (d (N - c)) with v at the step's start, of variance kT/m;
-//                            V the mean velocity and c = 1 where momentum is conserved, else 0; under flow the flow's
-//                            own kinetic energy is in it
-//
-// N: free particles; V: the volume between wall surfaces; edges to wall particles count half in the virial.
+//   kinetic temperature      with mass only: m sum |v - V|^2 / (d (N_f - c)) over the N_f free particles, with v at the step's
+//                            start, of variance kT/m; V the mean velocity and c = 1 where momentum is conserved, else 0; under flow
+//                            the flow's own kinetic energy is in it
 #include "odpd/analysis/observer.h"
 
 namespace odpd {

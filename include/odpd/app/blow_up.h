@@ -3,16 +3,16 @@
 // neighbours that the drive can cause (u^2 = (2 U)^2 r_c/H for walls of speed U a gap H apart, or bodies of given speed in a box
 // H long), and F_b the forces on bodies (a torque as one at its edge, or at r_c), a state is judged bad when
 //
-//   energy per particle      U/N > b (U_0 + d kT + |f| H + sum F_b r_c/N),  U_0 the larger of that at the start and of a
-//                            random arrangement of the same density, of hard cores one that leaves out pairs with u > 10 kT
-//                            (pairs/pair_moments.h); f the body force
+//   energy per particle      U/N > b (U_0 + d kT + |f| H + sum F_b r_c/N), N the particles that move, those of bodies included; U_0 the
+//                            larger of that at the start and of a random arrangement of the same density, of hard cores one that
+//                            leaves out pairs with u > 10 kT (pairs/pair_moments.h); f the body force
 //   kinetic temperature      of pairs within the cutoff, m <|v_i - v_j|^2>/(2 d) > b (kT + U_0 + m u^2)(1 + 10/n), with n degrees
 //                            of freedom: a flow common to both does not count, nor does a small system's scatter
-//   configurational          sum |F_i|^2 > b (kT (L + 3 S) + N F_u^2 + sum F_b^2), L = sum lap_i U, S^2 = sum (lap_i U)^2, F_u the
-//   temperature              drag that the drive can cause on a particle; at equilibrium <sum |F|^2> = kT <L>, and where
-//                            particles lie at random L vanishes (soft repulsion: their energy is hardly raised then).
+//   configurational          sum |F_i|^2 > b (kT (L + 3 S) + N_f F_u^2 + sum F_b^2) over the N_f free particles, L = sum lap_i U,
+//   temperature              S^2 = sum (lap_i U)^2, F_u the drag that the drive can cause on a particle; at equilibrium
+//                            <sum |F|^2> = kT <L>, and where particles lie at random L vanishes (soft repulsion: their energy is hardly raised then).
 //                            kT > 0 and f_c != 0 only. An unrelaxed start does not pass, or by chance, so this counts from the
-//                            first state on that is settled, sum |F_i|^2 <= 3 (kT L + N F_u^2 + sum F_b^2); after 50 times
+//                            first state on that is settled, sum |F_i|^2 <= 3 (kT L + N_f F_u^2 + sum F_b^2); after 50 times
 //                            the limit of explicit steps, in which soft particles find their places, from the first that passes
 //   jumps                    more than half of the pairs within the cutoff moved by more than it relative to each other in
 //                            the last step; only where the largest |f_c| r_c >= 10 kT, as weak repulsion does not mind

@@ -46,6 +46,8 @@ class Particles {
     return group[i] < 0 ? -group[i] - 1 : group[i] - 1 - walls;
   }
   std::int64_t free_count() const;
+  /// Those that move: free ones and constituents of bodies of unknown motion.
+  std::int64_t moving_count() const;
   /// Where images differ in velocity (shear), a particle moves as the one in the box, a constituent as the image that hangs
   /// together with its body's centre in the box. Boxes are counted from the same origin as `image`.
   const Image& moving_image(std::size_t i) const {
