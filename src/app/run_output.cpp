@@ -113,7 +113,9 @@ void RunOutput<D>::after_step() {
     if (!series_[k] || !observer.is_due(clock)) continue;
     std::vector<double> row = observer.series_row();
     if (row.empty()) continue;
-    row.insert(row.begin(), clock.time());
+    // The step just done began at step - 1. What Monte Carlo's observers see is the configuration that a sweep began with.
+    const double moment = simulation_.in_time() ? observer.moment() : 0.0;
+    row.insert(row.begin(), (static_cast<double>(clock.step - 1) + moment) * clock.dt);
     series_[k]->append(row);
   }
   if (due(output.trajectory_every)) trajectory_.append(simulation_.frame());

@@ -31,6 +31,7 @@ class Bodies : public Observer<D> {
   Bodies(ObserverSettings settings, BodiesSettings bodies, const Scene<D>& scene, double dt,
          bool in_time = true);
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
+  double moment() const override { return 0.5; }
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;

@@ -19,6 +19,7 @@ class Divergence : public Observer<D> {
   Divergence(ObserverSettings settings, const typename Grid<D>::Counts& cells,
              const Scene<D>& scene);
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
+  double moment() const override { return 0.5; }
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;

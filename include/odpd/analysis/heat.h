@@ -24,6 +24,7 @@ class Heat : public Observer<D> {
                     {"produced", "walls", "body_force", "shear", "energy_rate"}),
         scene_(scene) {}
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
+  double moment() const override { return 0.5; }
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;

@@ -24,6 +24,7 @@ class Msd : public Observer<D> {
   /// lags are multiples of every * dt.
   Msd(ObserverSettings settings, MsdSettings msd, const Scene<D>& scene, double dt);
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
+  double moment() const override { return 1.0; }
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;

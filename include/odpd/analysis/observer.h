@@ -7,8 +7,10 @@
 //   class MeanSpeed : public Observer<2> {
 //    public:
 //     explicit MeanSpeed(ObserverSettings s) : Observer<2>(std::move(s), {"mean", "largest"}) {}
+//     double moment() const override { return 0.5; }  // v_mid is the velocity of the middle of the step
 //     void measure(const Clock&, const Particles<2>&, const StepRecord<2>& record) override { ... add({mean, largest}); }
 //   };
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <string>
@@ -61,6 +63,16 @@ class Observer {
     return clock.measuring() && step % settings_.every == 0 && step > settings_.from &&
            step <= settings_.until;
   }
+  /// Steps so far that were to be sampled.
+  std::int64_t samples_due(const Clock& clock) const {
+    const std::int64_t last = std::min(clock.measured_steps(), settings_.until);
+    return std::max<std::int64_t>(0, last / settings_.every - settings_.from / settings_.every);
+  }
+  /// Where in a step its samples stand, and with them the rows of its series: 0 where it looks at the record's first stage (edges,
+  /// forces and positions at the step's start), 1/2 at v_mid or at what acts during the step (means over the stages), 1 at the
+  /// particles as the step leaves them.
+  virtual double moment() const { return 0.0; }
+
   /// One sample from the step just done (clock.step already advanced past it): hands its numbers to `add`.
   virtual void measure(const Clock& clock, const Particles<D>& particles,
                        const StepRecord<D>& record) = 0;
@@ -70,7 +82,8 @@ class Observer {
   /// mean of each column, as <name>.<column>.
   virtual void add_results(Results& results) const;
 
-  /// Columns after `time`, and the row of the newest sample (empty: nothing new to write). Unless overridden: the sample.
+  /// Columns after `time`, which is that of `moment`, and the row of the newest sample (empty: nothing new to write). Unless
+  /// overridden: the sample.
   virtual std::vector<std::string> series_columns() const { return columns_; }
   virtual std::vector<double> series_row() const { return newest_; }
 

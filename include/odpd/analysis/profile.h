@@ -39,6 +39,7 @@ class Profile : public Observer<D> {
   Profile(ObserverSettings settings, ProfileSettings profile, const Scene<D>& scene);
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
+  double moment() const override { return 0.5; }
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   std::vector<std::string> series_columns() const override;

@@ -41,6 +41,7 @@ class Stress : public Observer<D> {
  public:
   Stress(ObserverSettings settings, StressBins bins, const Scene<D>& scene);
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
+  double moment() const override { return 0.5; }
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;

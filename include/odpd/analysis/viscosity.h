@@ -47,6 +47,8 @@ class Viscosity : public Observer<D> {
   Viscosity(ObserverSettings settings, const ViscositySettings& viscosity, const Scene<D>& scene,
             double dt);
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
+  /// The integrated stress is that up to the step's end.
+  double moment() const override { return helfand_ ? 1.0 : 0.5; }
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;

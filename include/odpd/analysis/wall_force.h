@@ -15,6 +15,7 @@ class WallForce : public Observer<D> {
  public:
   WallForce(ObserverSettings settings, const Scene<D>& scene);
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
+  double moment() const override { return 0.5; }
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
