@@ -71,7 +71,9 @@ std::unique_ptr<Observer<D>> Bodies<D>::make(const ObserverEntry<D>& entry) {
   b.msd = read_msd(entry);
   b.r_max = read_r_max(entry);
   b.bin = config.positive("bin", b.bin);
-  if (b.bin > b.r_max) config.fail("bin", "must be less than r_max");
+  if (b.bin > b.r_max)
+    config.fail(config.has("bin") ? "bin" : "r_max",
+                fmt::format("bin = {} must be at most r_max = {}", b.bin, b.r_max));
   b.empty = config.positive("empty", b.empty);
   if (b.empty >= 1.0) config.fail("empty", "must be below 1, the mean density of the fluid");
   return std::make_unique<Bodies<D>>(std::move(settings), b, entry.scene, entry.clock.dt,

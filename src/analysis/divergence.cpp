@@ -23,7 +23,7 @@ std::unique_ptr<Observer<D>> Divergence<D>::make(const ObserverEntry<D>& entry) 
     entry.config.fail("kind",
                       "under [shear] neighbouring cells of two images slide past each other: use "
                       "walls, or a profile");
-  const auto cells = read_cells(entry);
+  const auto cells = read_cells(entry, 3.0);
   for (const std::int64_t count : cells)
     if (count < 3)
       entry.config.fail("bins", "differences need at least 3 cells in every direction");

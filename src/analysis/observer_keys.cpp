@@ -36,10 +36,10 @@ int read_axis(const ObserverEntry<D>& entry) {
 }
 
 template <int D>
-typename Grid<D>::Counts read_cells(const ObserverEntry<D>& entry) {
+typename Grid<D>::Counts read_cells(const ObserverEntry<D>& entry, double fewest) {
   const Vec<D> extent = entry.scene.fluid_high() - entry.scene.fluid_low();
   std::vector<double> fallback;
-  for (int c = 0; c < D; ++c) fallback.push_back(std::max(1.0, std::round(extent[c])));
+  for (int c = 0; c < D; ++c) fallback.push_back(std::max(fewest, std::round(extent[c])));
   const std::vector<double> given = entry.config.numbers("bins", fallback);
   if (given.size() != D) entry.config.fail("bins", fmt::format("{} counts are needed", D));
   typename Grid<D>::Counts bins{};
@@ -66,10 +66,10 @@ double read_r_max(const ObserverEntry<D>& entry) {
   return r_max;
 }
 
-#define ODPD_INSTANTIATE(D)                                                 \
-  template int read_direction<D>(const Config&, const std::string&, int);   \
-  template int read_axis<D>(const ObserverEntry<D>&);                       \
-  template typename Grid<D>::Counts read_cells<D>(const ObserverEntry<D>&); \
+#define ODPD_INSTANTIATE(D)                                                         \
+  template int read_direction<D>(const Config&, const std::string&, int);           \
+  template int read_axis<D>(const ObserverEntry<D>&);                               \
+  template typename Grid<D>::Counts read_cells<D>(const ObserverEntry<D>&, double); \
   template double read_r_max<D>(const ObserverEntry<D>&);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)

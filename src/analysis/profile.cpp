@@ -33,6 +33,25 @@ std::int64_t fitted_bins(const ProfileSettings& p, const Scene<D>& scene) {
   return count;
 }
 
+namespace {
+
+// An empty range is an error of who gives it. Where nobody does and nothing is fitted, no range is needed.
+void check_range(const Config& config, const ProfileSettings& p) {
+  if (p.fit_from < p.fit_to) return;
+  const bool from = config.has("fit_from"), to = config.has("fit_to");
+  if (from || to)
+    config.fail(from ? "fit_from" : "fit_to",
+                fmt::format("fit_from = {}{} must be less than fit_to = {}{}", p.fit_from,
+                            from ? "" : " (the default)", p.fit_to, to ? "" : " (the default)"));
+  if (p.fit != ProfileFit::none)
+    config.fail("fit",
+                "the surfaces are at most two cutoffs apart, so no part of the profile is one "
+                "cutoff clear of both: give "
+                "fit_from and fit_to, or leave out the fit");
+}
+
+}  // namespace
+
 template <int D>
 std::unique_ptr<Observer<D>> Profile<D>::make(const ObserverEntry<D>& entry) {
   ObserverSettings settings = entry.settings();
@@ -55,7 +74,7 @@ std::unique_ptr<Observer<D>> Profile<D>::make(const ObserverEntry<D>& entry) {
   const double margin = scene.box().is_periodic(p.axis) ? 0.0 : scene.model().cutoff();
   p.fit_from = config.number("fit_from", scene.fluid_low()[p.axis] + margin);
   p.fit_to = config.number("fit_to", scene.fluid_high()[p.axis] - margin);
-  if (!(p.fit_from < p.fit_to)) config.fail("fit_from", "must be less than fit_to");
+  check_range(config, p);
   const std::int64_t needed = p.fit == ProfileFit::none ? 0 : p.fit == ProfileFit::parabola ? 4 : 3;
   if (fitted_bins(p, scene) < needed)
     config.fail("fit",
@@ -159,6 +178,12 @@ void Profile<D>::add_results(Results& results) const {
   }
   density.curves.push_back(std::move(n));
   if (this->average().samples() == 0) return;
+  if (!(profile_.fit_from < profile_.fit_to))
+    results.notes.push_back(
+        fmt::format("{}: the surfaces are at most two cutoffs apart, so walls order the fluid "
+                    "everywhere between them; a "
+                    "fit would need fit_from and fit_to",
+                    name));
   results.tables.emplace_back(name, t);
   results.charts.emplace_back(name + "_velocity", std::move(velocity));
   results.charts.emplace_back(name + "_density", std::move(density));

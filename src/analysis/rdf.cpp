@@ -48,7 +48,7 @@ std::unique_ptr<Observer<D>> Rdf<D>::make(const ObserverEntry<D>& entry) {
     if (comparison->to - comparison->from < r_max / static_cast<double>(bins) ||
         comparison->to > r_max)
       config.fail(
-          "compare_to",
+          config.has("compare_to") ? "compare_to" : "compare_from",
           fmt::format("must be at least a bin above compare_from and at most r_max = {}", r_max));
   }
   return std::make_unique<Rdf<D>>(std::move(settings), r_max, bins, entry.scene, comparison);

@@ -117,6 +117,43 @@ TEST_F(MakeObservers, RefuseWhatTheyDoNotKnow) {
   refuse("kind = \"density-residual\"\nclear_of_bodies = 1.0\n", {"clear_of_bodies", "[[body]]"});
 }
 
+// What no key in the file asks for is refused by none: a channel two cutoffs wide has no room for the default range of a fit.
+TEST_F(MakeObservers, TakeAChannelWithoutRoomForAFit) {
+  auto s = records::periodic<2>(4.0, {{{1.0, 2.0}}, {{3.0, 2.2}}});
+  records::add_walls(s, 1.0);
+  const Scene<2> thin(s);
+  const auto made = [&](const std::string& keys) {
+    const Config config = Config::from_text("[[observe]]\n" + keys, "case.toml");
+    auto observers = odpd::make_observers<2>(config, thin, odpd::Clock{.dt = 0.02});
+    config.reject_unread();
+    return observers;
+  };
+  auto profile = std::move(made("kind = \"profile\"\n").front());
+  profile->measure(odpd::Clock{.dt = 0.02}, thin.particles(), records::record(thin));
+  const auto results = records::results(*profile);
+  ASSERT_EQ(results.tables.size(), 1u);
+  EXPECT_EQ(results.tables[0].second.rows.size(), 20u);
+  EXPECT_TRUE(results.scalars.empty()) << "no fit, no numbers of one";
+  ASSERT_EQ(results.notes.size(), 1u);
+  EXPECT_NE(results.notes[0].find("two cutoffs"), std::string::npos);
+  const auto refused = [&](const std::string& keys, std::initializer_list<const char*> parts) {
+    expect_error<ConfigError>([&] { made(keys); }, parts);
+  };
+  refused("kind = \"profile\"\nfit = \"linear\"\n", {"case.toml:3", "fit'", "fit_from and fit_to"});
+  refused(
+      "kind = \"profile\"\nfit_from = 2.5\n",
+      {"case.toml:3", "fit_from'", "fit_from = 2.5 must be less than fit_to = 2 (the default)"});
+  refused("kind = \"profile\"\nfit_to = 1.5\n", {"case.toml:3", "fit_to'", "2 (the default)"});
+  refused("kind = \"profile\"\nfit_from = 2.0\nfit_to = 1.5\n", {"case.toml:3", "fit_from'"});
+  refused("kind = \"viscosity\"\n", {"case.toml:2", "kind'", "wider than two cutoffs"});
+  EXPECT_EQ(made("kind = \"profile\"\nfit = \"linear\"\nfit_from = 1.2\nfit_to = 2.8\n").size(),
+            3u);
+  EXPECT_EQ(made("kind = \"divergence\"\n").size(), 3u)
+      << "three cells across, though it is 2 wide";
+  refused("kind = \"rdf\"\nreference = 1.0\ncompare_from = 2.0\n",
+          {"case.toml:4", "compare_from'"});
+}
+
 TEST_F(MakeObservers, RefuseWhatTheSceneHasNot) {
   const auto refused = [](odpd::SceneSettings<2> s, const std::string& kind,
                           std::initializer_list<const char*> parts) {

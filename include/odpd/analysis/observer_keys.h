@@ -16,9 +16,9 @@ int read_direction(const Config& config, const std::string& key, int fallback);
 template <int D>
 int read_axis(const ObserverEntry<D>& entry);
 
-/// `bins`, D counts; by default cells near 1 wide.
+/// `bins`, D counts; by default cells near 1 wide, at least `fewest` in every direction.
 template <int D>
-typename Grid<D>::Counts read_cells(const ObserverEntry<D>& entry);
+typename Grid<D>::Counts read_cells(const ObserverEntry<D>& entry, double fewest = 1.0);
 
 /// `r_max` of distances between particles: at most half the shortest periodic edge, by default two cutoffs.
 template <int D>

@@ -25,8 +25,9 @@ struct ProfileSettings {
   int axis = 1;
   std::int64_t bins = 20;
   ProfileFit fit = ProfileFit::none;
-  int component = 0;                    ///< of velocity, for the fit
-  double fit_from = 0.0, fit_to = 0.0;  ///< coordinates; bins whose centres lie between are fitted
+  int component = 0;  ///< of velocity, for the fit
+  /// Coordinates; bins whose centres lie between are fitted. Without a fit the range may be empty.
+  double fit_from = 0.0, fit_to = 0.0;
 };
 
 /// How many bins a fit would use: their centres lie in its range.
@@ -38,8 +39,8 @@ class Profile : public Observer<D> {
  public:
   Profile(ObserverSettings settings, ProfileSettings profile, const Scene<D>& scene);
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
-  void measure(const Clock& clock, const Particles<D>& particles,
   double moment() const override { return 0.5; }
+  void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   std::vector<std::string> series_columns() const override;
