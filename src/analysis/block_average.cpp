@@ -58,6 +58,7 @@ double BlockAverage::plateau(std::vector<double> blocks) {
     const double correlation = square > 0.0 ? std::min(lagged / square, 0.95) : 0.0;
     if (correlation > 2.0 / std::sqrt(n))
       error *= std::sqrt((1.0 + correlation) / (1.0 - correlation));
+    if (std::isnan(error)) return error;  // of numbers that are undefined
     largest = std::max(largest, error);
     const std::size_t half = blocks.size() / 2;
     for (std::size_t k = 0; k < half; ++k) blocks[k] = 0.5 * (blocks[2 * k] + blocks[2 * k + 1]);

@@ -38,7 +38,8 @@ bool Displacements::add(std::vector<double> now, std::span<const std::int32_t> k
       }
     }
     for (std::size_t a = 0; a < kinds_; ++a)
-      window_[index(lag_) * kinds_ + a] = population[a] > 0.0 ? sum[a] / population[a] : 0.0;
+      window_[index(lag_) * kinds_ + a] =
+          population[a] > 0.0 ? sum[a] / population[a] : std::nan("");
     if (++lag_ < lags_) return false;
     finish_window(population, components.size());
     complete = true;
@@ -62,7 +63,7 @@ void Displacements::finish_window(std::span<const double> population, std::size_
     const std::vector<double> even(t.size(), 1.0);
     const double slope = t.size() > 1 ? fit_polynomial(1, t, y, even).coefficient[1] : y[0] / t[0];
     value[a] = slope / (2.0 * static_cast<double>(components));
-    value[kinds_] += population[a] * value[a];
+    if (population[a] > 0.0) value[kinds_] += population[a] * value[a];
     everyone += population[a];
   }
   value[kinds_] /= everyone;

@@ -111,6 +111,11 @@ void Msd<D>::add_results(Results& results) const {
                     this->settings().name, msd_.window));
     return;
   }
+  for (std::size_t a = 0; a < species_; ++a)
+    if (std::isnan(diffusion.mean(a)))
+      results.notes.push_back(fmt::format(
+          "{}: displacements and diffusion of '{}' are undefined: it has no free particles",
+          this->settings().name, species[a].name));
   Table table;
   table.columns = {"lag"};
   Chart chart{.title = "Mean-square displacement",

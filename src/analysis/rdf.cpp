@@ -67,7 +67,7 @@ std::vector<double> Rdf<D>::factors(const Particles<D>& particles) const {
       for (std::size_t k = 0; k < bins_; ++k) {
         const double shell =
             ball<D>(dr * static_cast<double>(k + 1)) - ball<D>(dr * static_cast<double>(k));
-        factor.push_back(pairs > 0.0 ? scene_.fluid_volume() / (pairs * shell) : 0.0);
+        factor.push_back(pairs > 0.0 ? scene_.fluid_volume() / (pairs * shell) : std::nan(""));
       }
     }
   return factor;
@@ -124,6 +124,11 @@ void Rdf<D>::add_results(Results& results) const {
   const auto& species = scene_.settings().species;
   Table table;
   table.comment = {"r: middle of the bin; standard errors by block averaging"};
+  if (scene_.box().periodic_directions() < D)
+    table.comment.emplace_back(
+        "walls: g counts on full shells around every particle, also where a wall cuts them, so it "
+        "falls below 1 at large r: "
+        "compare it with that of the same channel only");
   table.columns = {"r"};
   Chart chart{.title = "Radial distribution function",
               .x_label = "r / r_c",
@@ -134,6 +139,10 @@ void Rdf<D>::add_results(Results& results) const {
   for (std::size_t a = 0; a < species_; ++a)
     for (std::size_t b = a; b < species_; ++b) {
       const std::string pair = species[a].name + "_" + species[b].name;
+      if (std::isnan(average.mean(column)))
+        results.notes.push_back(fmt::format(
+            "{}: g of {} is undefined: there is no pair of free particles of these species",
+            this->settings().name, pair));
       table.columns.insert(table.columns.end(), {"g_" + pair, "g_" + pair + "_error"});
       Curve curve{.title = species[a].name + " - " + species[b].name,
                   .x = {},
@@ -162,12 +171,14 @@ void Rdf<D>::add_deviations(Results& results) const {
     const double r = middle(column % bins_);
     if (r < comparison_->from || r > comparison_->to) continue;
     const double deviation = std::abs(average.mean(column) - comparison_->value);
+    if (std::isnan(deviation)) continue;  // a pair of species that nobody belongs to
     sum += deviation * deviation;
     count += 1.0;
     if (deviation < largest.mean) continue;
     largest.mean = deviation;
     largest.standard_error = average.standard_error(column);
   }
+  if (count == 0.0) largest.mean = std::nan("");
   results.scalars.push_back(without_error(this->named("rms_deviation"), std::sqrt(sum / count)));
   results.scalars.push_back(std::move(largest));
 }

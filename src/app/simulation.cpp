@@ -22,6 +22,18 @@ SceneSettings<D> scene_that_fits(const Config& config, CheckpointReader* restart
   return scene;
 }
 
+// Why an observer gives no numbers and no table.
+std::string unsampled(const ObserverSettings& observer, std::int64_t measured_steps) {
+  return fmt::format(
+      "{}: nothing was sampled, so its numbers are undefined and it has no table: {}, and {} "
+      "step(s) were measured",
+      observer.name,
+      observer.from > 0 ? fmt::format("it samples every {} step(s) after the first {}",
+                                      observer.every, observer.from)
+                        : fmt::format("every = {}", observer.every),
+      measured_steps);
+}
+
 }  // namespace
 
 template <int D>
@@ -198,7 +210,11 @@ void Simulation<D>::run(const std::function<bool()>& stop,
 template <int D>
 Results Simulation<D>::results() const {
   Results results;
-  for (const auto& observer : observers_) observer->add_results(results);
+  for (const auto& observer : observers_) {
+    observer->add_results(results);
+    if (clock_.measuring() && observer->samples_due(clock_) == 0)
+      results.notes.push_back(unsampled(observer->settings(), clock_.measured_steps()));
+  }
   if (!scene_.settings().walls.empty())
     results.scalars.push_back(
         without_error("alarm_crossings", static_cast<double>(alarm_crossings_), 0.0));

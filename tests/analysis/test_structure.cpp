@@ -73,6 +73,38 @@ TYPED_TEST(StructureTest, AnIdealGasHasNoStructure) {
   EXPECT_NEAR(counted / expected_in_all, 1.0, 5.0 / std::sqrt(expected_in_all));
 }
 
+// Between walls H apart shells are counted in full where the walls cut them: of a line of length r in a direction at the angle t to
+// the normal 1 - r |cos t|/H lies inside, and |cos t| has the mean 1/2 (3D) or 2/pi. Counts as above; bound 6 standard errors.
+TYPED_TEST(StructureTest, AnIdealGasBetweenWalls) {
+  constexpr int D = TypeParam::D;
+  constexpr std::size_t n = 60, samples = 200, bins = 8;
+  const Vec<D> size = support::uniform_vec<D>(6.0);
+  Vec<D> low{}, high = size;
+  low[1] = 1.0;
+  high[1] = 4.0 + low[1];
+  auto s = records::periodic<D>(6.0, support::random_points<D>(low, high, n, 0));
+  records::add_walls(s, 0.0);
+  const Scene<D> scene(s);
+  Rdf<D> rdf({.kind = "rdf", .name = "g"}, 2.0, bins, scene);
+  StepRecord<D> record = records::record(scene);
+  for (std::size_t t = 0; t < samples; ++t) {
+    const auto fluid = support::random_points<D>(low, high, n, 1000 + t);
+    std::copy(fluid.begin(), fluid.end(), record.start.position.end() - n);
+    rdf.measure(Clock{}, scene.particles(), record);
+  }
+  const odpd::Results results = records::results(rdf);
+  const odpd::Table& table = results.tables.at(0).second;
+  EXPECT_EQ(table.comment.size(), 2u) << "a word on walls";
+  const double volume = std::pow(6.0, D - 1) * 4.0;
+  for (std::size_t k = 0; k < bins; ++k) {
+    const double r = table.rows[k][0];
+    const double g = 1.0 - r / 4.0 * (D == 3 ? 0.5 : 2.0 / std::numbers::pi);
+    const double expected =
+        samples * n * (n - 1) / 2.0 * (ball<D>(r + 0.125) - ball<D>(r - 0.125)) / volume * g;
+    EXPECT_NEAR(table.rows[k][1], g, 6.0 * g / std::sqrt(expected)) << "bin " << k;
+  }
+}
+
 TYPED_TEST(StructureTest, OnePairFillsOneBin) {
   constexpr int D = TypeParam::D;
   std::vector<Vec<D>> r(2, support::uniform_vec<D>(0.1));

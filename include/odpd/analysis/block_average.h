@@ -3,7 +3,8 @@
 //
 // Samples are vectors of fixed width. At most 64 blocks are kept; when they are full, neighbours are merged and blocks
 // become twice as long. The standard error is the largest over the block lengths that leave at least 16 blocks, each
-// enlarged where neighbouring blocks are still correlated, and NaN with fewer blocks than that.
+// enlarged where neighbouring blocks are still correlated, and NaN with fewer blocks than that. A column with a sample that is
+// undefined (NaN) has neither a mean nor an error.
 #include <cstdint>
 #include <span>
 #include <string>

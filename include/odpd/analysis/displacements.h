@@ -4,7 +4,8 @@
 //   D = (1/(2 d)) d/dt <|r(t) - r(0)|^2>          (Phan-Thien et al. 2016, eq. 52)
 //
 // as the least-squares slope between the lags `fit_from` and `window`; d is the number of components that count. One window
-// begins where the last one ended, so that each gives an independent sample.
+// begins where the last one ended, so that each gives an independent sample. Of a kind that nothing belongs to both are undefined
+// (NaN).
 #include <span>
 #include <string>
 #include <vector>
