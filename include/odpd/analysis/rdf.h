@@ -6,8 +6,7 @@
 // with N(N-1)/2 pairs for A = B, so that an ideal gas has g = 1 at any N; undefined (NaN, and a note) where there is no such pair.
 // Distances up to half the shortest periodic edge. Between walls V is the volume between their surfaces, and shells count in full
 // also where a wall cuts them: an ideal gas between walls H apart has not 1 but 1 - r/(2 H) in 3D, 1 - 2 r/(pi H) in 2D (r < H).
-// Where g has a value to be
-// compared with (1 in an ideal gas), over the bins whose middle lies between two distances:
+// Where g has a value to be compared with (1 in an ideal gas), over the bins whose middle lies between two distances:
 //
 //   <name>.rms_deviation = sqrt(mean_k (g_k - value)^2),   <name>.largest_deviation = max_k |g_k - value|
 //
