@@ -92,6 +92,7 @@ void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage
   }
   const PhaseTimer timer(phases_, Phase::edges);
   model_.write_edges(list_, stage.box, stage.position, particles_, stage.network);
+  model_.refuse_unknown(stage.network, particles_);
   write_slips(stage);
   stage.potential_force.resize(positions.size());
   stage.driving_force.resize(positions.size());

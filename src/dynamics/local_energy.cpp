@@ -74,7 +74,9 @@ double LocalEnergy<D>::at(std::size_t i, const Vec<D>& r, double sign) {
   const auto partners = partners_of(r);
   for (const Partner& other : partners) {
     const auto j = index(other.index);
-    if (meet(i, j)) energy += model_.pair(std::sqrt(other.r2), site, site_of(particles_, j)).u;
+    if (!meet(i, j)) continue;
+    const double u = model_.pair(std::sqrt(other.r2), site, site_of(particles_, j)).u;
+    if (std::isfinite(u) || !model_.excludes(i, j, particles_)) energy += u;
   }
   if (densities_ != nullptr) weigh(i, partners, sign);
   return energy + model_.bonded_energy(i, r, box_, particles_);

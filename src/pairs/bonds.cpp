@@ -216,10 +216,23 @@ double BondedModel<D>::bonded_energy(std::size_t i, const Vec<D>& r, const Box<D
     const double length = norm(box.separation(r, particles.position[j]));
     if (!(length < half_box)) return std::numeric_limits<double>::infinity();
     energy += bond_terms(bond.p, length).u;
-    if (bond.p.exclude != BondExclusion::none)
-      energy -= pairs_->pair(length, site_of(particles, i), site_of(particles, j)).u;
+    if (bond.p.exclude == BondExclusion::none) continue;
+    const double u = pairs_->pair(length, site_of(particles, i), site_of(particles, j)).u;
+    if (std::isfinite(u)) energy -= u;  // else it was left out
   }
   return energy + frame_energy(particles.id[i], r, box, particles);
+}
+
+template <int D>
+bool BondedModel<D>::excludes(std::size_t i, std::size_t j, const Particles<D>& particles) const {
+  const std::size_t id = index(particles.id[i]);
+  if (id + 1 >= start_.size()) return false;
+  for (std::size_t k = start_[id]; k < start_[id + 1]; ++k) {
+    const Bond& bond = bonds_[bond_of_[k]];
+    const bool joins = bond.i == particles.id[j] || bond.j == particles.id[j];
+    if (joins && bond.p.exclude != BondExclusion::none) return true;
+  }
+  return false;
 }
 
 // Of the frame of particle `id`, were that particle at r.

@@ -89,7 +89,7 @@ void set_integrals(const PairFunction<D>& pair, PairMoments& m) {
     return all[k];
   };
   m.energy = defined(0);
-  m.virial = defined(1);
+  if (m.energy) m.virial = defined(1);
   m.drag = defined(2);
   m.shear = defined(3);
 }

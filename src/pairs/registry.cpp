@@ -5,6 +5,7 @@
 #include "odpd/pairs/dpd.h"
 #include "odpd/pairs/dpd_keys.h"
 #include "odpd/pairs/physical_keys.h"
+#include "odpd/pairs/table_model.h"
 
 namespace odpd {
 
@@ -19,7 +20,10 @@ struct Row {
 
 template <int D>
 const std::vector<Row<D>>& table() {
-  static const std::vector<Row<D>> rows{{"dpd", &read_dpd<D>, true}};
+  static const std::vector<Row<D>> rows{
+      {"dpd", &read_dpd<D>, true},
+      {"table", &read_table_model<D>, false},
+  };
   return rows;
 }
 

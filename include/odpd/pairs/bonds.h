@@ -73,11 +73,15 @@ class BondedModel : public PairModel<D> {
   /// frame may turn freely, BondTooLongError for one as long as half the box.
   void write_edges(const PairList<D>& list, const Box<D>& box, std::span<const Vec<D>> positions,
                    const Particles<D>& particles, PairNetwork<D>& network) const override;
+  void refuse_unknown(const PairNetwork<D>& network, const Particles<D>& particles) const override {
+    pairs_->refuse_unknown(network, particles);
+  }
   const Densities* densities() const override { return pairs_->densities(); }
   bool conservative() const override { return pairs_->conservative() || !bonds_.empty(); }
   bool thermal() const override { return pairs_->thermal(); }
   double bonded_energy(std::size_t i, const Vec<D>& r, const Box<D>& box,
                        const Particles<D>& particles) const override;
+  bool excludes(std::size_t i, std::size_t j, const Particles<D>& particles) const override;
 
   const std::vector<Bond>& bonds() const { return bonds_; }
 

@@ -1,5 +1,15 @@
 #pragma once
-// A pair model looks at two particles and writes one edge; nothing else in the code knows which model it was.
+// A pair model looks at two particles and writes one edge; nothing else in the code knows which model it was. Its contract, to which
+// tests/pairs/test_pair_contract.cpp and tests/physics/test_pair_models.cpp hold every row of the name table (pairs/registry.cpp):
+//
+//   f_c = -u' and k_c = -f_c' between the kinks. u is continuous and so 0 at the cutoff; f_c may jump there, but then the
+//   configurational temperature is undefined.
+//   From the cutoff on all terms but kT are 0.
+//   zeta_par, zeta_perp and kT are not negative. None of the terms depends on which of the two particles comes first.
+//   write_edges gives each edge what pair(r) says of it, in the same bits on any number of threads. The step asks nothing else of
+//   the force, so motion samples what Monte Carlo samples, which takes u alone.
+//   Where the model has no numbers, u is infinite: trial moves do not go there, and refuse_unknown ends a stage that does. Nothing is
+//   ever not a number.
 #include <span>
 #include <string>
 #include <utility>
@@ -41,6 +51,9 @@ class PairModel {
   virtual void write_edges(const PairList<D>& list, const Box<D>& box,
                            std::span<const Vec<D>> positions, const Particles<D>& particles,
                            PairNetwork<D>& network) const = 0;
+  /// Throws BlowUpError where `network` holds a pair of infinite u, and says what the model lacks there. Called once the edges
+  /// of a stage are written, not while a start is relaxed: it may begin so.
+  virtual void refuse_unknown(const PairNetwork<D>&, const Particles<D>&) const {}
   /// What the energy has beyond pairs, as long as the model lives; null in models of pairs.
   virtual const Densities* densities() const { return nullptr; }
   /// Some pair has a conservative force; otherwise energy and pressure are those of an ideal gas.
@@ -53,6 +66,8 @@ class PairModel {
                                const Particles<D>&) const {
     return 0.0;
   }
+  /// Bonds take this pair's energy out again.
+  virtual bool excludes(std::size_t, std::size_t, const Particles<D>&) const { return false; }
   virtual ModelParameters parameters() const { return {}; }
 };
 
