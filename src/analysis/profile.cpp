@@ -143,8 +143,12 @@ Table Profile<D>::table() const {
       row.insert(row.end(), {average.ratio(column(b, c), column(b, 0)), average.ratio_error(term)});
     }
     const std::vector<BlockAverage::RatioTerm> term{{1.0, column(b, D + 1), column(b, D + 2)}};
-    row.insert(row.end(),
-               {average.ratio(column(b, D + 1), column(b, D + 2)), average.ratio_error(term)});
+    if (some_force_jumps(scene_.pair_moments())) {
+      row.insert(row.end(), 2, std::nan(""));  // as in thermo
+    } else {
+      row.insert(row.end(),
+                 {average.ratio(column(b, D + 1), column(b, D + 2)), average.ratio_error(term)});
+    }
     t.rows.push_back(std::move(row));
   }
   return t;

@@ -110,8 +110,17 @@ void Thermo<D>::add_results(Results& results) const {
   results.scalars.push_back(this->mean_of(1, prefix + "pressure"));
   const std::vector<BlockAverage::RatioTerm> terms{{1.0, 2, 3}};
   // Without a conservative force this is 0/0: undefined, and written as null.
-  results.scalars.push_back({prefix + "config_temperature", this->average().ratio(2, 3),
-                             this->average().ratio_error(terms)});
+  const std::string temperature = prefix + "config_temperature";
+  if (some_force_jumps(scene_.pair_moments())) {
+    results.scalars.push_back({temperature});
+    results.notes.push_back(
+        temperature +
+        " is undefined: the conservative force of some pair of species jumps at "
+        "its end, where its stiffness has no value");
+  } else {
+    results.scalars.push_back(
+        {temperature, this->average().ratio(2, 3), this->average().ratio_error(terms)});
+  }
   if (scene_.settings().mass > 0.0 && in_time_)
     results.scalars.push_back(this->mean_of(4, prefix + "kinetic_temperature"));
 }

@@ -49,6 +49,7 @@ JsonObject solver_json(const Simulation<D>& simulation) {
   json.set("worst_residual", s.worst_residual);
   if (solver_traits(options.name).preconditioned)
     json.set("preconditioner", options.preconditioner).set("fallbacks", s.fallbacks);
+  if (s.clamped > 0) json.set("stiffnesses_left_out", s.clamped);
   return json;
 }
 

@@ -157,6 +157,14 @@ void set_largest(const PairFunction<D>& pair, double from, PairMoments& m) {
     m.stiffness = std::max(m.stiffness, k * (1.0 - r / m.force_range));
 }
 
+// One that ends as a power of the distance loses a good part of what it has from the first distance to the second.
+template <int D>
+bool jumps_at_end(const PairFunction<D>& pair, const PairMoments& m) {
+  const double before = std::abs(pair(m.force_range * (1.0 - 1e-6)).f_c),
+               last = std::abs(pair(m.force_range * (1.0 - 1e-12)).f_c);
+  return last > 0.9 * before && last > 1e-6 * m.force;
+}
+
 }  // namespace
 
 template <int D>
@@ -168,6 +176,7 @@ PairMoments pair_moments(const PairModel<D>& model, Site site_i, Site site_j) {
   set_integrals(pair, m);
   const std::optional<double> core = core_of(pair, m.kT);
   set_largest(pair, core.value_or(std::ldexp(pair.ends().front(), -10)), m);
+  m.force_jumps = jumps_at_end(pair, m);
   if (core) {
     m.energy_beyond_core = *core > 0.0 ? integrals(pair, *core)[0] : m.energy;
   } else {
@@ -195,6 +204,11 @@ std::optional<double> explicit_step_limit(const std::vector<PairMoments>& pairs,
           limit, std::max(0.2 * p.zeta_par / p.stiffness, 0.1 * std::sqrt(mass / p.stiffness)));
   }
   return limit;
+}
+
+bool some_force_jumps(const std::vector<PairMoments>& pairs) {
+  return std::any_of(pairs.begin(), pairs.end(),
+                     [](const PairMoments& p) { return p.force_jumps; });
 }
 
 double largest_kT(const std::vector<PairMoments>& pairs) {

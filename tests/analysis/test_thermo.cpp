@@ -4,6 +4,7 @@
 #include "records.h"
 #include "support/dimensions.h"
 #include "support/memory_archive.h"
+#include "support/pair_functions.h"
 
 namespace {
 
@@ -97,6 +98,23 @@ TEST(Thermo, ParticlesOfBodiesShareTheEnergy) {
   const double across = std::hypot(0.6, 0.2);
   const double energy = 2.0 * 5.0 * 0.16 + 2.0 * 5.0 * std::pow(1.0 - across, 2);
   EXPECT_NEAR(records::mean(records::results(thermo), "energy_per_particle"), energy / 5.0, 1e-12);
+}
+
+// Of a force that jumps at its end there is no Laplacian, and so no temperature.
+TYPED_TEST(ThermoTest, AJumpOfTheForceLeavesNoTemperature) {
+  constexpr int D = TypeParam::D;
+  std::vector<Vec<D>> r(2, support::uniform_vec<D>(0.2));
+  r[1][0] = 0.7;
+  auto s = records::periodic<D>(4.0, r);
+  s.model = support::gaussian<D>(18.5, 0.3, 1.0);
+  const Scene<D> scene(s);
+  Thermo<D> thermo({.kind = "thermo", .name = "thermo"}, scene);
+  thermo.measure(Clock{}, scene.particles(), records::record(scene));
+  const auto results = records::results(thermo);
+  EXPECT_TRUE(std::isnan(records::mean(results, "config_temperature")));
+  ASSERT_EQ(results.notes.size(), 1U);
+  EXPECT_NE(results.notes[0].find("config_temperature is undefined"), std::string::npos);
+  EXPECT_TRUE(std::isfinite(records::mean(results, "pressure")));
 }
 
 // At r = 0 the Laplacian is infinite: that edge is left out, and one such sample spoils no average.

@@ -7,6 +7,10 @@ write_periodic box
 sed -i -e 's/^a = 18.5/model = "table"\nforce_file = "force.csv"/' box/case.toml
 printf 'r,f\n0.0,18.5\n1.0,0.0\n' >box/force.csv
 run() { "$odpd" run "$@" --threads 1 --set output.pictures=false; }
+# value FILE KEY...: of a summary.
+value() { "$python" -c 'import json, sys; v = json.load(open(sys.argv[1]))
+for key in sys.argv[2:]: v = v[key]
+print(v)' "$@"; }
 # table TEXT: the table of the next runs.
 table() { printf "$1" >box/force.csv; }
 
@@ -86,6 +90,13 @@ expect_exit 0 run box "${core[@]}" --set integrator.dt=5e-5 --set run.duration=0
 expect_text "$out_text" 'pressure = undefined'
 # Trial moves do not go where the table does not reach.
 expect_exit 0 run box "${core[@]}" --set integrator.name=monte-carlo --set integrator.dt=1 --set run.duration=400 --out sampled
+# Nor does that keep a bond from holding a pair there which it excludes.
+sampling=(--set integrator.name=monte-carlo --set integrator.dt=1 --set run.duration=400)
+dimers='shape="chain", spacing=0.25, species="fluid", H=400.0, count=5, exclude="repulsion"'
+expect_exit 0 run box "${core[@]}" "${sampling[@]}" --set "molecule=[{$dimers}]" --set 'observe=[{kind="molecules"}]' --out bonded
+if have_python; then
+  expect "$python" -c "assert 0.2 < $(value bonded/summary.json observables molecules.molecule.bond_length mean) < 0.28"
+fi
 # Far too large a step. Pairs come nearer than the table begins, or the watch sees what came of it first.
 wild=("${core[@]}" --set integrator.dt=0.005 --set run.duration=4)
 expect_error 2 run box "${wild[@]}" --set integrator.name=euler --out blown -- 'step ' 'particles ' ' apart, and ' \
@@ -101,4 +112,9 @@ for name in euler trapezoidal extrapolated implicit; do
 done
 expect test -s blown/last_good.h5
 expect_exit 0 run box "${core[@]}" --set fluid.force_below=constant --set integrator.dt=5e-5 --set run.duration=0.05 --out cored
+# Where the force rises with r the stiffness is negative: implicit steps leave it out and say how often.
+expect_exit 0 run box "${core[@]}" --set integrator.name=implicit --set integrator.dt=5e-5 --set run.duration=0.005 --out implicit
+expect_text "$out_text" 'negative stiffnesses were left out of the implicit repulsion'
+expect_text implicit/summary.json '"stiffnesses_left_out"'
+expect test "$(grep -c stiffnesses_left_out cored/summary.json)" -eq 0
 finish

@@ -184,6 +184,17 @@ TEST(PairMoments, AnIntegrableCoreIsDefined) {
   EXPECT_NEAR(m.virial.value(), 4.0 * std::numbers::pi / 2.0, 1e-13);
 }
 
+TEST(PairMoments, AForceThatJumpsAtItsEndIsTold) {
+  for (const double s_bar : {0.07, 0.5, 1.0, 5.0})
+    EXPECT_FALSE(moments<2>({.s_bar = s_bar, .gamma_far = 0.1, .cutoff_far = 2.0}).force_jumps);
+  EXPECT_FALSE(moments<2>({.a = 0.0}).force_jumps);
+  const auto cut = pair_moments(*support::gaussian<2>(18.5, 0.3, 1.0), 1);
+  EXPECT_TRUE(cut[0].force_jumps && odpd::some_force_jumps(cut));
+  EXPECT_TRUE(pair_moments(*support::lennard_jones<3>(1.0, 1.0), Site{}, Site{}).force_jumps);
+  // 1e-14 of the largest.
+  EXPECT_FALSE(pair_moments(*support::gaussian<2>(18.5, 0.12, 1.0), Site{}, Site{}).force_jumps);
+}
+
 // A model that refuses a distance has no integrals over it.
 TEST(PairMoments, WhatAModelRefusesIsUndefined) {
   const auto force = [](double r, PairTerms& t) {

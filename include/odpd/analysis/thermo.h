@@ -9,7 +9,8 @@
 //                            inside (analysis/fluid_region.h), 1 without walls; N_V: free particles and bodies of unknown motion
 //                            there, each body one particle at its centre. As that of `stress`: its kinetic and conservative part.
 //   configurational          <sum_i |F_i|^2> / <sum_i lap_i U> over free particles, F the conservative force (wall
-//   temperature              potentials included); kT at equilibrium (Rugh 1997); not a thermometer under flow
+//   temperature              potentials included); kT at equilibrium (Rugh 1997); not a thermometer under flow;
+//                            undefined where f_c of some pair jumps at its end (PairMoments::force_jumps)
 //   kinetic temperature      with mass only: m sum |v - V|^2 / (d (N_f - c)) over the N_f free particles, with v at the step's
 //                            start, of variance kT/m; V the mean velocity and c = 1 where momentum is conserved, else 0; under flow
 //                            the flow's own kinetic energy is in it

@@ -30,6 +30,8 @@ struct PairMoments {
   double force = 0.0, stiffness = 0.0;  ///< |f_c|, and k above
   double zeta_par = 0.0, zeta_perp = 0.0;
   double force_range = 0.0;  ///< r_e (length)
+  /// f_c does not go to 0 towards r_e: there u' has a step, of which no stiffness tells, and the Laplacian of the energy no value.
+  bool force_jumps = false;
   /// End of the force and of friction above a tenth of the largest: without the weak friction of longer range.
   double range = 0.0;
 };
@@ -43,6 +45,9 @@ std::vector<PairMoments> pair_moments(const PairModel<D>& model, std::size_t spe
 
 /// The step of explicit repulsion, above, of the stiffest pair: infinite where nothing repels, nothing where k is not known.
 std::optional<double> explicit_step_limit(const std::vector<PairMoments>& pairs, double mass);
+
+/// Of some pair.
+bool some_force_jumps(const std::vector<PairMoments>& pairs);
 
 /// Of all pairs.
 double largest_kT(const std::vector<PairMoments>& pairs);
