@@ -1,14 +1,12 @@
 #include "odpd/pairs/dpd.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "edge_kernels.h"
-#include "odpd/core/error.h"
 #include "odpd/core/index.h"
 #include "odpd/core/isa.h"
 #include "odpd/pairs/edge_writer.h"
+#include "odpd/pairs/fluid_keys.h"
 
 namespace odpd {
 
@@ -20,27 +18,14 @@ void validate(const DpdParameters& p) {
   validate(p.friction());
 }
 
-// The force of a pair must not depend on which of the two comes first in memory.
-void validate(std::size_t species, const std::vector<DpdParameters>& table) {
-  if (table.size() != species * species)
-    throw ConfigError(
-        fmt::format("DPD parameters of {} pairs of species are given, {} species have {}",
-                    table.size(), species, species * species));
-  for (std::size_t a = 0; a < species; ++a)
-    for (std::size_t b = 0; b < a; ++b)
-      if (table[a * species + b] != table[b * species + a])
-        throw ConfigError(fmt::format(
-            "DPD parameters of species {} with {} must be those of {} with {}", a, b, b, a));
-  for (const DpdParameters& p : table) validate(p);
-}
-
 }  // namespace
 
 template <int D>
 DpdModel<D>::DpdModel(int species, std::vector<DpdParameters> parameters, DpdFluid fluid)
     : species_(species), fluid_(std::move(fluid)) {
-  validate(index(species), parameters);
+  require_pair_table(species, parameters);
   for (const DpdParameters& p : parameters) {
+    validate(p);
     table_.push_back({p, PowerWeight(p.s_bar), PowerWeight(p.s_bar + 1.0), Friction(p.friction())});
     cutoff_ = std::max({cutoff_, p.cutoff, p.friction().reach()});
     conservative_ = conservative_ || p.a > 0.0;

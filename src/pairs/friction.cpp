@@ -7,7 +7,9 @@
 namespace odpd {
 
 void require_parameter(bool ok, const char* name, double value, const char* range) {
-  if (!ok) throw ConfigError(fmt::format("DPD parameter {} = {} must be {}", name, value, range));
+  if (!ok)
+    throw ConfigError(
+        fmt::format("parameter {} = {} of a pair model must be {}", name, value, range));
 }
 
 void validate(const FrictionParameters& p) {

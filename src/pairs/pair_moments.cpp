@@ -157,12 +157,13 @@ void set_largest(const PairFunction<D>& pair, double from, PairMoments& m) {
     m.stiffness = std::max(m.stiffness, k * (1.0 - r / m.force_range));
 }
 
-// One that ends as a power of the distance loses a good part of what it has from the first distance to the second.
+// One that ends as a power of the distance loses a good part of what it has from the first distance to the second. A jump of 2 % of the
+// largest force has been seen to raise the configurational temperature by 9 %; what this lets pass is lost in its standard error.
 template <int D>
 bool jumps_at_end(const PairFunction<D>& pair, const PairMoments& m) {
   const double before = std::abs(pair(m.force_range * (1.0 - 1e-6)).f_c),
                last = std::abs(pair(m.force_range * (1.0 - 1e-12)).f_c);
-  return last > 0.9 * before && last > 1e-6 * m.force;
+  return last > 0.9 * before && last > 1e-4 * m.force;
 }
 
 }  // namespace

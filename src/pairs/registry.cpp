@@ -4,6 +4,7 @@
 
 #include "odpd/pairs/dpd.h"
 #include "odpd/pairs/dpd_keys.h"
+#include "odpd/pairs/gaussian.h"
 #include "odpd/pairs/physical_keys.h"
 #include "odpd/pairs/table_model.h"
 
@@ -23,6 +24,7 @@ const std::vector<Row<D>>& table() {
   static const std::vector<Row<D>> rows{
       {"dpd", &read_dpd<D>, true},
       {"table", &read_table_model<D>, false},
+      {"gaussian", &read_force_model<D, GaussianForce>, false},
   };
   return rows;
 }

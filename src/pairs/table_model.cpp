@@ -81,19 +81,6 @@ void validate(const TableParameters& p) {
                     p.force->file(), begin, cutoff));
 }
 
-// The force of a pair must not depend on which of the two comes first in memory.
-void validate(std::size_t species, const std::vector<TableParameters>& table) {
-  if (table.size() != species * species)
-    throw ConfigError(fmt::format("tables of {} pairs of species are given, {} species have {}",
-                                  table.size(), species, species * species));
-  for (std::size_t a = 0; a < species; ++a)
-    for (std::size_t b = 0; b < a; ++b)
-      if (table[a * species + b] != table[b * species + a])
-        throw ConfigError(
-            fmt::format("the table of species {} with {} must be that of {} with {}", a, b, b, a));
-  for (const TableParameters& p : table) validate(p);
-}
-
 // Keys of [fluid] (`whole`) or one pair of species, `base` where they are absent.
 TableParameters read_parameters(const Config& keys, const TableParameters& base, bool whole) {
   TableParameters p = base;
@@ -133,8 +120,9 @@ void ForceTable::operator()(double r, PairTerms& t) const {
 template <int D>
 TableModel<D>::TableModel(int species, const std::vector<TableParameters>& parameters)
     : species_(species) {
-  validate(index(species), parameters);
+  require_pair_table(species, parameters);
   for (const TableParameters& p : parameters) {
+    validate(p);
     const std::vector<double>& points = p.force->points();
     Entry entry{p, Friction(p.friction), points.front(), {}, {}};
     (*p.force)(entry.begin, entry.first);

@@ -40,6 +40,9 @@ inline const std::vector<ModelExample>& model_examples() {
                          [](double r) { return 40.0 * r * (1.0 - r) * (1.0 - r); })},
                  {"pair.0.force_file",
                   csv_of("r,u", 0.3, 1.0, [](double r) { return 0.5 / r - 0.5; })}}},
+      {.name = "gaussian",
+       .fluid = "a = 18.5\nw = 0.3\ngamma = 4.5\nkT = 1.0\n",
+       .pair = "a = 30.0\nw = 0.25\ncutoff = 0.9\n"},
   };
   return examples;
 }

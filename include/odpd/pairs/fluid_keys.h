@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "odpd/core/config.h"
+#include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/pairs/calibration.h"
 
 namespace odpd {
@@ -34,6 +36,23 @@ std::vector<Parameters> pair_table(const FluidKeys& f, const Parameters& fluid, 
     table[pair.a * f.species + pair.b] = table[pair.b * f.species + pair.a] =
         read(pair.keys, fluid);
   return table;
+}
+
+/// Throws ConfigError unless such a table has all pairs of species, and those of A with B are those of B with A: forces must not depend
+/// on which of two particles comes first.
+template <class Parameters>
+void require_pair_table(int species, const std::vector<Parameters>& table) {
+  const std::size_t n = index(species);
+  if (table.size() != n * n)
+    throw ConfigError("parameters of " + std::to_string(table.size()) +
+                      " pairs of species are given, " + std::to_string(n) + " species have " +
+                      std::to_string(n * n));
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      if (table[a * n + b] != table[b * n + a])
+        throw ConfigError("parameters of species " + std::to_string(a) + " with " +
+                          std::to_string(b) + " must be those of " + std::to_string(b) + " with " +
+                          std::to_string(a));
 }
 
 }  // namespace odpd

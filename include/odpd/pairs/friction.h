@@ -32,7 +32,7 @@ struct FrictionParameters {
   friend bool operator==(const FrictionParameters&, const FrictionParameters&) = default;
 };
 
-/// Throws ConfigError "DPD parameter NAME = VALUE must be RANGE" unless `ok`.
+/// Throws ConfigError "parameter NAME = VALUE of a pair model must be RANGE" unless `ok`.
 void require_parameter(bool ok, const char* name, double value, const char* range);
 /// Throws ConfigError for values out of range.
 void validate(const FrictionParameters& p);
