@@ -48,6 +48,12 @@ class BlowUpError : public SolverError {
   std::int64_t particle_;
 };
 
+/// A bond as long as half the box, where another image of its end may be nearer than the bonded one.
+class BondTooLongError : public BlowUpError {
+ public:
+  using BlowUpError::BlowUpError;
+};
+
 /// A file could not be read or written (exit code 3).
 class IoError : public Error {
  public:

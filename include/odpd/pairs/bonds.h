@@ -36,12 +36,6 @@ struct Bond {
   BondParameters p{};
 };
 
-/// A bond as long as half the box, where another image of its end may be nearer than the bonded one.
-class BondTooLongError : public BlowUpError {
- public:
-  using BlowUpError::BlowUpError;
-};
-
 /// Half the shortest periodic edge, which every bond must be shorter than; infinite where there is none.
 template <int D>
 double longest_bond(const Box<D>& box);
