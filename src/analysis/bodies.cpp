@@ -91,6 +91,7 @@ void Bodies<D>::add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& nois
   for (std::size_t b = 0; b < kind_.size(); ++b) {
     Vec<D> total{}, moment{};
     for (const std::size_t p : members_[b]) {
+      if (!stage.network.owned.owns(p)) continue;
       total += weight * (force[p] + noise[p]);
       // The random torque acts with the arms of the step's start in both stages, as the scheme has it.
       moment += weight * (torque(stage.arms[p], force[p]) + torque(noise_arms[p], noise[p]));
@@ -125,13 +126,15 @@ void Bodies<D>::add_motion(const Particles<D>& particles, const StepRecord<D>& r
       motion = rigid_motion<D>(arms, velocities);
     if (scene_.body_settings(b).motion == BodyMotion::free)
       motion.velocity -= flow(members_[b][0], arms[0]);
+    if (particles.ranks().rank() > 0) continue;  // every rank knows the bodies' motion
     double* const out = &sample[kind_[b] * width + D + turns];
     for (std::size_t c = 0; c < D; ++c) out[c] += share_[kind_[b]] * motion.velocity.x[c];
     for (std::size_t c = 0; c < turns; ++c) out[D + c] += share_[kind_[b]] * motion.angular.x[c];
   }
   const double share = 1.0 / static_cast<double>(particles.free_count());
+  const Share own = particles.owned();
   for (std::size_t i = 0; i < record.v_mid.size(); ++i)
-    if (particles.is_free(i))
+    if (particles.is_free(i) && own.owns(i))
       for (std::size_t c = 0; c < D; ++c)
         sample[names_.size() * width + c] += share * (record.v_mid[i] - flow(i, {})).x[c];
 }
@@ -166,12 +169,13 @@ void Bodies<D>::follow(const Particles<D>& particles) {
 template <int D>
 void Bodies<D>::count_fluid(const Particles<D>& particles, const Stage<D>& stage) {
   const double per_particle = scene_.fluid_volume() / static_cast<double>(particles.free_count());
+  const Share own = particles.owned();
   std::vector<double> g(density_.width(), 0.0);
   for (std::size_t b = 0; b < kind_.size(); ++b) {
     Vec<D> centre = stage.position[members_[b][0]] - stage.arms[members_[b][0]];
     stage.box.wrap(centre);
     for (std::size_t i = 0; i < stage.position.size(); ++i) {
-      if (!particles.is_free(i)) continue;
+      if (!particles.is_free(i) || !own.owns(i)) continue;
       const double q = norm(stage.box.separation(stage.position[i], centre));
       const auto bin = static_cast<std::size_t>(q / bodies_.bin);
       if (bin < bins_)
@@ -180,6 +184,7 @@ void Bodies<D>::count_fluid(const Particles<D>& particles, const Stage<D>& stage
                                               bodies_.bin * static_cast<double>(bin + 1));
     }
   }
+  own.ranks->sum(std::span(g));
   density_.add(g);
 }
 
@@ -198,6 +203,7 @@ void Bodies<D>::measure(const Clock&, const Particles<D>& particles, const StepR
   if (record.has_corrector())
     add_stage(record.corrector, noise, record.start.arms, 1.0 - record.start_weight, sample);
   add_motion(particles, record, sample);
+  particles.ranks().sum(std::span(sample));
   this->add(std::move(sample));
   if (in_time_) follow(particles);
   count_fluid(particles, record.start);

@@ -89,11 +89,13 @@ template <int D>
 void DensityResidual<D>::measure(const Clock&, const Particles<D>& particles,
                                  const StepRecord<D>& record) {
   std::vector<double> counts(cells(), 0.0);
+  const Share own = particles.owned();
   for (std::size_t i = 0; i < record.start.position.size(); ++i)
-    if (particles.is_free(i)) {
+    if (particles.is_free(i) && own.owns(i)) {
       const std::size_t column = column_[grid_.cell_of(record.start.position[i])];
       if (column != no_column) counts[column] += 1.0;
     }
+  own.ranks->sum(std::span(counts));
   const double thesis = thesis_residual(counts);
   instant_ = {thesis / std::sqrt(static_cast<double>(counts.size())), thesis};
   this->add(std::move(counts));

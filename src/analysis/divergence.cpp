@@ -34,14 +34,16 @@ template <int D>
 void Divergence<D>::measure(const Clock&, const Particles<D>& particles,
                             const StepRecord<D>& record) {
   std::vector<double> sample(this->average().width(), 0.0);
+  const Share own = particles.owned();
   for (std::size_t i = 0; i < record.v_mid.size(); ++i) {
-    if (!particles.is_free(i)) continue;
+    if (!particles.is_free(i) || !own.owns(i)) continue;
     Vec<D> middle = record.start.position[i] + (0.5 * record.dt) * record.v_mid[i];
     scene_.box().wrap(middle);
     const std::size_t cell = grid_.cell_of(middle);
     sample[column(cell, 0)] += 1.0;
     for (std::size_t c = 0; c < D; ++c) sample[column(cell, c + 1)] += record.v_mid[i].x[c];
   }
+  own.ranks->sum(std::span(sample));
   this->add(std::move(sample));
 }
 

@@ -1,7 +1,9 @@
 #include "odpd/analysis/heat.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <tuple>
 
 #include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
@@ -57,6 +59,7 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
   std::vector<double> friction(network.i.size()), noise(record.edge_noise.size());
   parallel_for(network.size(), [&](std::int64_t edge) {
     const auto k = index(edge);
+    if (!network.counts(k)) return;
     const Vec<D> slip = network.slip(k, stage.velocity);
     friction[k] = -dot(friction_of(network, k, slip), slip);
   });
@@ -68,24 +71,33 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
   add_sliding_friction(network, force);
   double walls = 0.0, driven = 0.0, shear = 0.0, rate = 0.0;
   for (std::size_t k = 0; k < network.slip_0.size(); ++k) {
+    if (!network.counts(k)) continue;
     const Vec<D> pair = network.push(k);
     const Vec<D> drag = friction_of(network, k, network.slip(k, stage.velocity));
     rate -= dot(pair, network.slip_0[k]);
     shear -= dot(pair + drag, network.slip_0[k]);
   }
   for (std::size_t k = 0; k < record.start.network.slip_0.size() && k < noise.size(); ++k)
-    shear -= dot(record.edge_noise[k], record.start.network.slip_0[k]);
+    if (record.start.network.counts(k))
+      shear -= dot(record.edge_noise[k], record.start.network.slip_0[k]);
+  const Share own = particles.owned();
   for (std::size_t i = 0; i < force.size(); ++i) {
+    if (!own.owns(i)) continue;
     const Vec<D>& v = stage.velocity[i];
     rate -= dot(v, stage.potential_force[i]);
     driven += dot(v, stage.driving_force[i]);
     if (particles.is_known(i)) walls -= dot(v, force[i] + stage.potential_force[i]);
   }
   std::vector<Vec<D>> velocity = stage.velocity;
-  driven += body_power(scene_, particles, record, stage, velocity);
+  const double on_bodies = body_power(scene_, particles, record, stage, velocity);
+  if (own.ranks->rank() == 0) driven += on_bodies;  // every rank knows them
   for (std::size_t k = 0; k < noise.size(); ++k)
-    noise[k] = -dot(record.edge_noise[k], record.start.network.slip(k, velocity));
-  const double dissipated = fixed_sum(friction), produced = dissipated + fixed_sum(noise);
+    if (record.start.network.counts(k))
+      noise[k] = -dot(record.edge_noise[k], record.start.network.slip(k, velocity));
+  std::array<double, 6> sums{walls, driven, shear, rate, fixed_sum(friction), fixed_sum(noise)};
+  own.ranks->sum(std::span(sums));
+  std::tie(walls, driven, shear, rate) = std::tie(sums[0], sums[1], sums[2], sums[3]);
+  const double dissipated = sums[4], produced = dissipated + sums[5];
   if (dissipated > 0.0)
     worst_ = std::max(worst_, std::abs(walls + driven + shear - produced - rate) / dissipated);
   const std::array<double, 5> powers{produced, walls, driven, shear, rate};

@@ -104,8 +104,9 @@ void Profile<D>::measure(const Clock&, const Particles<D>& particles, const Step
   configurational_terms(scene_, particles, record.start, force_squared, laplacian, wall_energy);
   std::vector<double> sample(this->average().width(), 0.0);
   const Box<D> box = scene_.box().at(record.start.time + 0.5 * record.dt);
+  const Share own = particles.owned();
   for (std::size_t i = 0; i < record.v_mid.size(); ++i) {
-    if (!particles.is_free(i)) continue;
+    if (!particles.is_free(i) || !own.owns(i)) continue;
     Vec<D> middle = record.start.position[i] + (0.5 * record.dt) * record.v_mid[i];
     Vec<D> velocity = record.v_mid[i];
     std::array<std::int32_t, index(D)> image{};
@@ -120,6 +121,7 @@ void Profile<D>::measure(const Clock&, const Particles<D>& particles, const Step
       sample[column(index(bin), D + 2)] += laplacian[i];
     }
   }
+  own.ranks->sum(std::span(sample));
   this->add(std::move(sample));
 }
 

@@ -56,9 +56,11 @@ std::unique_ptr<Observer<D>> Rdf<D>::make(const ObserverEntry<D>& entry) {
 
 template <int D>
 std::vector<double> Rdf<D>::factors(const Particles<D>& particles) const {
+  const Share own = particles.owned();
   std::vector<double> count(species_, 0.0);
   for (std::size_t i = 0; i < particles.position.size(); ++i)
-    if (particles.is_free(i)) count[index(particles.species[i])] += 1.0;
+    if (particles.is_free(i) && own.owns(i)) count[index(particles.species[i])] += 1.0;
+  own.ranks->sum(std::span(count));
   const double dr = r_max_ / static_cast<double>(bins_);
   std::vector<double> factor;
   for (std::size_t a = 0; a < species_; ++a)
@@ -87,7 +89,8 @@ void Rdf<D>::measure(const Clock&, const Particles<D>& particles, const StepReco
   const auto& r = record.start.position;
   list.update(r);
   std::vector<double> sample(this->average().width(), 0.0);
-  for (std::int64_t row = 0; row < list.rows(); ++row) {
+  const Share own = particles.owned();
+  for (std::int64_t row = own.first; row < own.end(list.rows()); ++row) {
     const auto i = index(row);
     if (!particles.is_free(i)) continue;
     for (const std::int32_t partner : list.partners(row)) {
@@ -99,6 +102,7 @@ void Rdf<D>::measure(const Clock&, const Particles<D>& particles, const StepReco
         sample[pair_index(particles.species[i], particles.species[j]) * bins_ + bin] += 1.0;
     }
   }
+  own.ranks->sum(std::span(sample));
   // Of the particles given: a restart may bring others than the scene began with.
   const std::vector<double> factor = factors(particles);
   for (std::size_t k = 0; k < sample.size(); ++k) sample[k] *= factor[k];

@@ -96,6 +96,7 @@ void add_stage_stress(const StressGrid<D>& grid, const Places<D>& places, const 
                       double weight, std::vector<double>& sum) {
   const PairNetwork<D>& network = stage.network;
   const auto edge = [&](std::size_t k, double* into) {
+    if (!network.counts(k)) return;
     const Vec<D> r = places.at(index(network.i[k]));
     const Vec<D> arm = places.between(network, k);
     const Vec<D> push = network.push(k);
@@ -124,8 +125,10 @@ void add_kinetic(const StressGrid<D>& grid, const Places<D>& places, const Scene
       grid.add_point(kinetic_part, r, scene.largest_kT() * unit, unit, sum);
     }
   };
+  const Share own = particles.owned();
   for (std::size_t i = 0; i < particles.group.size(); ++i)
-    if (particles.is_free(i)) add(places.at(i), mass, moving ? record.v_start[i] : Vec<D>{});
+    if (particles.is_free(i) && own.owns(i))
+      add(places.at(i), mass, moving ? record.v_start[i] : Vec<D>{});
   if (particles.bodies.empty()) return;
   const std::vector<std::int32_t> at = particles.index_of_id();
   for (const RigidBody<D>& body : particles.bodies) {
@@ -135,6 +138,7 @@ void add_kinetic(const StressGrid<D>& grid, const Places<D>& places, const Scene
     for (const std::int64_t id : body.members)
       if (moving) v += (1.0 / n) * record.v_start[index(at[index(id)])];
     const auto first = index(at[index(body.members[0])]);
+    if (!own.owns(first)) continue;
     if (const Box<D>& box = record.start.box; moving && box.shear)
       v[box.shear->flow] -= record.start.crossed[first] * box.sliding;
     add(places.at(first), mass * n, v);
@@ -158,11 +162,13 @@ std::vector<double> stress_of(const Scene<D>& scene, const Particles<D>& particl
     add_stage_stress(grid, Places<D>(particles, record.corrector), record.corrector,
                      1.0 - record.start_weight, sum);
   const auto noise = [&](std::size_t k, double* into) {
+    if (!start.network.counts(k)) return;
     const Vec<D> arm = places.between(start.network, k);
     grid.add_line(noise_part, places.at(index(start.network.i[k])), arm, arm, record.edge_noise[k],
                   into);
   };
   add_in_blocks(record.edge_noise.size(), grid.width(), noise, sum);
+  particles.ranks().sum(std::span(sum));
 
   const double volume = scene.fluid_volume();
   const double per_bin = static_cast<double>(std::max<std::int64_t>(bins.bins, 1)) / volume;

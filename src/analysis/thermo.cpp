@@ -35,28 +35,35 @@ double kinetic_temperature(const Scene<D>& scene, const Particles<D>& particles,
   if (velocity.empty()) return std::nan("");  // Monte Carlo has no velocities
   const auto n = static_cast<double>(particles.free_count());
   const bool conserved = scene.conserves_momentum();
+  const Share own = particles.owned();
   Vec<D> mean{};
   for (std::size_t i = 0; i < velocity.size() && conserved; ++i)
-    if (particles.is_free(i)) mean += (1.0 / n) * velocity[i];
+    if (particles.is_free(i) && own.owns(i)) mean += (1.0 / n) * velocity[i];
+  own.ranks->sum(std::span(mean.x));
   double square = 0.0;
   for (std::size_t i = 0; i < velocity.size(); ++i)
-    if (particles.is_free(i)) square += dot(velocity[i] - mean, velocity[i] - mean);
+    if (particles.is_free(i) && own.owns(i)) square += dot(velocity[i] - mean, velocity[i] - mean);
+  square = own.ranks->sum(square);
   return mass * square / (D * (conserved ? n - 1.0 : n));
 }
 
 namespace {
 
-// Free particles and bodies of unknown motion, each of these one particle at its centre, between the wall surfaces.
+// Free particles of this rank and bodies of unknown motion, each of these one particle at its centre and its first member's
+// rank's, between the wall surfaces.
 template <int D>
 double centres_inside(const Particles<D>& particles, const Places<D>& places,
                       const FluidRegion<D>& region) {
+  const Share own = particles.owned();
   double count = 0.0;
   for (std::size_t i = 0; i < particles.group.size(); ++i)
-    if (particles.is_free(i) && region.holds(places.at(i))) count += 1.0;
+    if (particles.is_free(i) && own.owns(i) && region.holds(places.at(i))) count += 1.0;
   if (particles.bodies.empty()) return count;
   const std::vector<std::int32_t> place = particles.index_of_id();
-  for (const RigidBody<D>& body : particles.bodies)
-    if (!body.known && region.holds(places.at(index(place[index(body.members[0])])))) count += 1.0;
+  for (const RigidBody<D>& body : particles.bodies) {
+    const auto first = index(place[index(body.members[0])]);
+    if (!body.known && own.owns(first) && region.holds(places.at(first))) count += 1.0;
+  }
   return count;
 }
 
@@ -91,14 +98,18 @@ void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepR
   const Places<D> places(particles, record.start);
   const FluidRegion<D> region(scene_);
   for (std::size_t k = 0; k < virial.size(); ++k) {
+    if (!network.counts(k)) continue;
     const Vec<D> arm = places.between(network, k);
     const Vec<D> r = places.at(index(network.i[k]));
     virial[k] = region.inside(r, arm).length() * dot(arm, network.push(k));
   }
-  const double centres = centres_inside(particles, places, region);
-  this->add({(network.energy() + wall_energy) / static_cast<double>(particles.moving_count()),
-             (centres * scene_.largest_kT() + fixed_sum(virial) / D) / scene_.fluid_volume(),
-             fixed_sum(force_squared), fixed_sum(laplacian),
+  const Share own = particles.owned();
+  const double centres = own.ranks->sum(centres_inside(particles, places, region));
+  const double sum_of_virial = own.ranks->sum(fixed_sum(virial));
+  this->add({(network.energy() + own.ranks->sum(wall_energy)) /
+                 static_cast<double>(particles.moving_count()),
+             (centres * scene_.largest_kT() + sum_of_virial / D) / scene_.fluid_volume(),
+             own.sum(force_squared), own.sum(laplacian),
              kinetic_temperature(scene_, particles, peculiar(record.start, record.v_start))});
 }
 

@@ -34,12 +34,13 @@ template <int D>
 void WallForce<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
                              const std::vector<Vec<D>>& noise_force, double weight,
                              std::vector<double>& sample) const {
+  const Share own = particles.owned();
   std::vector<Vec<D>> force = noise_force;
   add_conservative_forces(stage.network, force);
   add_friction_forces<D>(stage.network, stage.velocity, force);
   add_sliding_friction(stage.network, force);
   for (std::size_t i = 0; i < force.size(); ++i) {
-    if (!particles.is_known(i) || particles.body_of(i) >= 0) continue;
+    if (!particles.is_known(i) || particles.body_of(i) >= 0 || !own.owns(i)) continue;
     const auto wall = index(particles.group[i] - 1);
     for (int c = 0; c < D; ++c) sample[wall * D + index(c)] += weight * force[i][c] / area(wall);
   }
@@ -49,7 +50,7 @@ void WallForce<D>::add_stage(const Particles<D>& particles, const Stage<D>& stag
   for (std::size_t w = 0; w < scene_.settings().walls.size(); ++w) {
     const auto& wall = scene_.settings().walls[w];
     double reaction = 0.0;
-    for (const Vec<D>& f : push)
+    for (const Vec<D>& f : own.part(std::span(push), 1))
       if (wall.high ? f[wall.axis] < 0.0 : f[wall.axis] > 0.0) reaction -= f[wall.axis];
     sample[w * D + index(wall.axis)] += weight * reaction / area(w);
   }
@@ -65,6 +66,7 @@ void WallForce<D>::measure(const Clock&, const Particles<D>& particles,
   add_stage(particles, record.start, noise, record.start_weight, sample);
   if (record.has_corrector())
     add_stage(particles, record.corrector, noise, 1.0 - record.start_weight, sample);
+  particles.ranks().sum(std::span(sample));
   const auto& settings = scene_.settings();
   for (std::size_t w = 0; w < settings.walls.size(); ++w) {
     const int facing = settings.wall_at(settings.walls[w].axis, !settings.walls[w].high);

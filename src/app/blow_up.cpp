@@ -80,6 +80,7 @@ auto BlowUpWatch<D>::sum_pairs(const Stage<D>& stage, double dt) const -> Pairs 
   for (const PairMoments& p : scene_.pair_moments()) reach = std::max(reach, p.range);
   Pairs sum;
   for (std::size_t k = 0; k < network.i.size(); ++k) {
+    if (!network.counts(k)) continue;
     const auto i = index(network.i[k]), j = index(network.j[k]);
     if (network.r[k] > reach || !particles.is_free(i) || !particles.is_free(j)) continue;
     sum.count += 1.0;
@@ -89,7 +90,9 @@ auto BlowUpWatch<D>::sum_pairs(const Stage<D>& stage, double dt) const -> Pairs 
     const Vec<D> slip = network.slip(k, particles.end_velocity);
     sum.slip_squared += dot(slip, slip);
   }
-  return sum;
+  std::array<double, 3> sums{sum.count, sum.jumped, sum.slip_squared};
+  particles.ranks().sum(std::span(sums));
+  return {sums[0], sums[1], sums[2]};
 }
 
 template <int D>
@@ -117,13 +120,17 @@ std::string BlowUpWatch<D>::judge_temperatures(const Stage<D>& stage, const Pair
     friction = std::max(friction, p.zeta_par + p.zeta_perp);
   }
   if (!(force > 0.0) || !(kT > 0.0)) return {};
+  const Share own = scene_.particles().owned();
   double squares = 0.0;
-  for (const double x : laplacian) squares += x * x;
-  const double contacts = 2.0 * static_cast<double>(stage.network.size()) / moving;
+  for (const double x : own.part(std::span(laplacian), 1)) squares += x * x;
+  squares = own.ranks->sum(squares);
+  std::int64_t edges = 0;
+  for (std::size_t k = 0; k < stage.network.i.size(); ++k) edges += stage.network.counts(k) ? 1 : 0;
+  const double contacts = 2.0 * static_cast<double>(own.ranks->sum(edges)) / moving;
   const double drag =
       contacts * friction * flow_slip_ +
       s.largest_force() * fluid_depth() * std::pow(moving / scene_.fluid_volume(), 1.0 / D);
-  const double square = fixed_sum(force_squared), curvature = fixed_sum(laplacian);
+  const double square = own.sum(force_squared), curvature = own.sum(laplacian);
   const double driven = n * drag * drag + load_squared_;
   const double scale = kT * (std::max(curvature, 0.0) + 3.0 * std::sqrt(squares)) + driven;
   const bool sound = square <= multiple_ * scale;
@@ -150,7 +157,7 @@ std::string BlowUpWatch<D>::judge(const Stage<D>& stage, double dt) {
   std::vector<double> force_squared, laplacian;
   double wall_energy = 0.0;
   configurational_terms(scene_, scene_.particles(), stage, force_squared, laplacian, wall_energy);
-  const double energy = (stage.network.energy() + wall_energy) / n;
+  const double energy = (stage.network.energy() + scene_.particles().ranks().sum(wall_energy)) / n;
   if (!std::isfinite(energy)) return "the energy is not finite";
   if (start_energy_ < 0.0) {
     // Attraction may take it below zero, which is no scale.
@@ -182,15 +189,20 @@ std::string BlowUpWatch<D>::judge(const Stage<D>& stage, double dt) {
 template <int D>
 std::int64_t BlowUpWatch<D>::fastest() const {
   const Particles<D>& particles = scene_.particles();
+  const Share own = particles.owned();
   std::int64_t id = -1;
   double most = 0.0;
-  for (std::size_t i = 0; i < particles.velocity.size(); ++i) {
+  for (auto i = index(own.first); i < index(own.last); ++i) {
     const double square = dot(particles.velocity[i], particles.velocity[i]);
     if (!particles.is_free(i) || !(square > most)) continue;
     most = square;
     id = particles.id[i];
   }
-  return id;
+  // The first rank with the fastest of all tells.
+  const bool here = id >= 0 && most == own.ranks->largest(most);
+  const std::int64_t teller =
+      own.ranks->smallest(std::int64_t{here ? own.ranks->rank() : own.ranks->size()});
+  return teller == own.ranks->size() ? -1 : own.ranks->sum(teller == own.ranks->rank() ? id : 0);
 }
 
 template <int D>
@@ -200,10 +212,12 @@ double BlowUpWatch<D>::friction_limit(const IntegratorSettings& integrator,
   if (from == 0 || integrator.order < from) return std::numeric_limits<double>::infinity();
   std::vector<std::array<double, index(D * D)>> blocks(stage.position.size());
   add_friction_blocks<D>(stage.network, blocks);
+  const Share own = scene_.particles().owned();
   double trace = 0.0;
-  for (std::size_t i = 0; i < blocks.size(); ++i)
+  for (auto i = index(own.first); i < index(own.last); ++i)
     for (std::size_t c = 0; c < D && scene_.particles().is_free(i); ++c)
       trace += blocks[i][c * (D + 1)];
+  trace = own.ranks->sum(trace);
   const double friction =
       trace / (D * static_cast<double>(scene_.particles().free_count())) + scene_.settings().zeta_0;
   return scene_.settings().mass / friction;

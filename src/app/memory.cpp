@@ -65,7 +65,7 @@ double machine_limit() {
 template <int D>
 MemoryNeed memory_need(const SceneSettings<D>& scene) {
   constexpr std::size_t d = D - 2;
-  struct Share {
+  struct Part {
     double particles;
     std::string keys;
   };
@@ -77,7 +77,7 @@ MemoryNeed memory_need(const SceneSettings<D>& scene) {
   for (const MoleculeSettings<D>& m : scene.molecules)
     in_molecules += static_cast<double>(m.molecules()) * static_cast<double>(m.beads());
   const double volume = scene.fluid_volume();
-  const std::array<Share, 4> shares{
+  const std::array<Part, 4> shares{
       {{file               ? static_cast<double>(scene.start_positions.size())
         : scene.count >= 0 ? static_cast<double>(scene.count)
                            : scene.density * volume,
@@ -88,8 +88,8 @@ MemoryNeed memory_need(const SceneSettings<D>& scene) {
        {in_bodies, "lower body.count, or the particles of its shape"},
        {file ? 0.0 : in_molecules, "lower molecule.count or the beads of it"}}};
   MemoryNeed need;
-  for (const Share& share : shares) need.particles += share.particles;
-  need.keys = std::max_element(shares.begin(), shares.end(), [](const Share& a, const Share& b) {
+  for (const Part& share : shares) need.particles += share.particles;
+  need.keys = std::max_element(shares.begin(), shares.end(), [](const Part& a, const Part& b) {
                 return a.particles < b.particles;
               })->keys;
   const double r_c = scene.model->cutoff();

@@ -39,11 +39,11 @@ std::string unsampled(const ObserverSettings& observer, std::int64_t measured_st
 template <int D>
 Simulation<D>::Simulation(const Config& config, CaseSettings settings,
                           const std::vector<ObserverKind<D>>& own_observers,
-                          CheckpointReader* restart)
+                          CheckpointReader* restart, const Communicator& ranks)
     : config_(config),
       settings_(std::move(settings)),
       clock_(settings_.clock),
-      scene_(scene_that_fits<D>(config, restart)),
+      scene_(scene_that_fits<D>(config, restart), ranks),
       dynamics_(scene_.box(), scene_.particles(), scene_.model(), scene_,
                 make_solver(settings_.solver), settings_.dynamics),
       integrator_(make_integrator<D>(settings_.integrator)),
@@ -198,7 +198,7 @@ const StepRecord<D>& Simulation<D>::step() {
 template <int D>
 void Simulation<D>::run(const std::function<bool()>& stop,
                         const std::function<void()>& after_step) {
-  while (!clock_.finished() && !stop()) {
+  while (!clock_.finished() && !scene_.particles().ranks().any(stop())) {
     step();
     if (clock_.step % BlowUpWatch<D>::interval == 0) judge();
     stop_at_target();

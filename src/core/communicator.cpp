@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "odpd/core/error.h"
+#include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 
 namespace odpd {
@@ -86,7 +87,7 @@ const Communicator& Communicator::alone() {
 template <class T, class Join>
 T Communicator::reduce(T x, const Join& join) const {
   if (size_ == 1) return x;
-  std::vector<T> all(static_cast<std::size_t>(size_));
+  std::vector<T> all(index(size_));
   gather(std::as_bytes(std::span(&x, 1)), std::as_writable_bytes(std::span(all)));
   T result = all.front();
   for (std::size_t r = 1; r < all.size(); ++r) result = join(result, all[r]);
@@ -96,7 +97,7 @@ T Communicator::reduce(T x, const Join& join) const {
 template <class T>
 void Communicator::add_up(std::span<T> x) const {
   if (size_ == 1) return;
-  std::vector<T> all(x.size() * static_cast<std::size_t>(size_));
+  std::vector<T> all(x.size() * index(size_));
   gather(std::as_bytes(x), std::as_writable_bytes(std::span(all)));
   std::copy_n(all.begin(), x.size(), x.begin());
   for (std::size_t k = x.size(); k < all.size(); ++k) x[k % x.size()] += all[k];
@@ -137,10 +138,10 @@ void Communicator::agree(const std::exception_ptr& failure) const {
   agreed.kind = static_cast<Failure>(sum(speaks ? static_cast<std::int64_t>(mine.kind) : 0));
   agreed.detail = sum(speaks ? mine.detail : 0);
   const std::int64_t length = sum(speaks ? std::ssize(mine.text) : std::int64_t{0});
-  std::string text = speaks ? mine.text : std::string(static_cast<std::size_t>(length), ' ');
-  std::string all(text.size() * static_cast<std::size_t>(size_), ' ');
+  std::string text = speaks ? mine.text : std::string(index(length), ' ');
+  std::string all(text.size() * index(size_), ' ');
   gather(std::as_bytes(std::span(text)), std::as_writable_bytes(std::span(all)));
-  agreed.text = all.substr(static_cast<std::size_t>(first * length), text.size());
+  agreed.text = all.substr(index(first * length), text.size());
   raise(agreed);
 }
 

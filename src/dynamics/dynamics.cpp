@@ -88,11 +88,14 @@ void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage
     const PhaseTimer timer(phases_, Phase::neighbours);
     motion_.locate(positions, time, stage);
     list_.slide(stage.box);
-    list_.update(stage.position);
+    list_.update(stage.position, particles_.owned());
   }
   const PhaseTimer timer(phases_, Phase::edges);
-  model_.write_edges(list_, stage.box, stage.position, particles_, stage.network);
-  model_.refuse_unknown(stage.network, particles_);
+  particles_.ranks().together([&] {
+    model_.write_edges(list_, stage.box, stage.position, particles_, stage.network);
+    model_.refuse_unknown(stage.network, particles_);
+  });
+  stage.network.owned = particles_.owned();
   write_slips(stage);
   stage.potential_force.resize(positions.size());
   stage.driving_force.resize(positions.size());
@@ -192,9 +195,12 @@ const System& Dynamics<D>::assemble(const Stage<D>& stage, const StepWeights& we
   resistance_.rebuild(stage.network, motion_.dofs(), particles_, stage.position, stage.arms,
                       weights.inertia + constants_.zeta_0, weights.stiffness_time,
                       weights.bond_time);
-  if (weights.stiffness_time > 0.0)
+  if (weights.stiffness_time > 0.0) {
+    std::int64_t clamped = 0;
     for (std::size_t k = 0; k < stage.network.k_c.size(); ++k)
-      if (stage.network.k_c[k] < 0.0) ++statistics_.clamped;
+      if (stage.network.k_c[k] < 0.0 && stage.network.counts(k)) ++clamped;
+    statistics_.clamped += particles_.ranks().sum(clamped);
+  }
   return resistance_.system();
 }
 
@@ -204,8 +210,10 @@ void Dynamics<D>::balance_momentum(const Unknowns& load, double shift, Unknowns&
   const Translations translations = motion_.dofs().translations();
   Unknowns difference(q.size());
   for (std::size_t k = 0; k < q.size(); ++k) difference[k] = load[k] / shift - q[k];
-  std::vector<double> excess = translations.sums(difference);
-  for (double& component : excess) component *= 1.0 / static_cast<double>(translations.nodes);
+  const Share share = motion_.dofs().share();
+  std::vector<double> excess = translations.sums(difference, share);
+  const std::int64_t nodes = translations.count(q.size(), share);
+  for (double& component : excess) component *= 1.0 / static_cast<double>(nodes);
   translations.add(excess, q);
 }
 
@@ -239,10 +247,14 @@ void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights
     balance_momentum(load, shift, guess);
   if (box_.shear && system.translations_are_null()) add_mean_flow(stage, guess);
   stage.velocity = motion_.velocities(stage, guess);
-  for (std::size_t i = 0; i < stage.velocity.size(); ++i)
-    if (!finite(stage.velocity[i]))
-      throw BlowUpError(fmt::format("the velocity of particle {} is not finite", particles_.id[i]),
-                        particles_.id[i]);
+  const Share own = particles_.owned();
+  own.ranks->together([&] {
+    for (auto i = index(own.first); i < index(own.last); ++i)
+      if (!finite(stage.velocity[i]))
+        throw BlowUpError(
+            fmt::format("the velocity of particle {} is not finite", particles_.id[i]),
+            particles_.id[i]);
+  });
 }
 
 template class Dynamics<2>;

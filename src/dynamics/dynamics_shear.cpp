@@ -38,9 +38,11 @@ auto Dynamics<D>::without_sliding_springs(const Stage<D>& stage, const StepWeigh
 /// box is cut.
 template <int D>
 void Dynamics<D>::add_mean_flow(const Stage<D>& stage, Unknowns& q) {
+  const Share own = particles_.owned();
   Vec<D> mean{};
   const auto add = [&](std::int32_t particle, const Vec<D>& arm) {
     const auto i = index(particle);
+    if (!own.owns(i)) return;
     mean += stage.box.flow_velocity(stage.position[i] - arm);
     mean[box_.shear->flow] += stage.crossed[i] * stage.box.sliding;
   };
@@ -50,7 +52,8 @@ void Dynamics<D>::add_mean_flow(const Stage<D>& stage, Unknowns& q) {
     add(first, stage.arms[index(first)]);
   }
   const Translations translations = motion_.dofs().translations();
-  mean *= 1.0 / static_cast<double>(translations.nodes);
+  own.ranks->sum(std::span(mean.x));
+  mean *= 1.0 / static_cast<double>(translations.count(q.size(), motion_.dofs().share()));
   translations.add(mean.x, q);
 }
 

@@ -141,19 +141,27 @@ void MonteCarlo<D>::sweep(Dynamics<D>& dynamics, std::int64_t step) {
   const PhaseTimer timer(dynamics.phases(), Phase::sweep);
   const Particles<D>& particles = dynamics.particles();
   const CounterRandom random(dynamics.settings().seed, Stream::monte_carlo);
+  const Share own = particles.owned();
+  std::array<std::int64_t, 2> count{};  // trials and those accepted, of this rank
   energy_->place();
   for (const std::int32_t row : particles.index_of_id()) {
     const auto i = index(row);
     if (!particles.is_free(i)) continue;
     const auto u = random.uniforms(static_cast<std::uint64_t>(step), 0,
                                    static_cast<std::uint64_t>(particles.id[i]), 0);
-    ++trials_;
-    if (try_move(dynamics, i, u)) ++accepted_;
+    const bool moved = try_move(dynamics, i, u);
+    if (!own.owns(i)) continue;
+    ++count[0];
+    if (moved) ++count[1];
   }
   for (std::size_t b = 0; b < index(dynamics.dofs().bodies()); ++b) {
-    ++trials_;
-    if (try_body(dynamics, b, random, step)) ++accepted_;
+    const bool moved = try_body(dynamics, b, random, step);
+    if (own.ranks->rank() > 0) continue;
+    ++count[0];
+    if (moved) ++count[1];
   }
+  trials_ += own.ranks->sum(count[0]);
+  accepted_ += own.ranks->sum(count[1]);
 }
 
 // Between 0.6 and 1.6 times the step, up to half the box: beyond it nothing is gained where moves are free.

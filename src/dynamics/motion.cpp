@@ -33,6 +33,7 @@ void Motion<D>::locate(std::span<const Vec<D>> positions, double time, Stage<D>&
   stage.box = box_.at(time);
   stage.position.resize(positions.size());
   stage.velocity.resize(positions.size());
+  const Share own = particles_.owned();
   std::vector<char> lost(ranges(n), 0);
   parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = index(begin); i < index(end); ++i) {
@@ -40,15 +41,17 @@ void Motion<D>::locate(std::span<const Vec<D>> positions, double time, Stage<D>&
       stage.velocity[i] = particles_.is_known(i) && particles_.body_of(i) < 0
                               ? surroundings_.known_velocity(particles_.group[i], time)
                               : Vec<D>{};
-      if (!finite(positions[i])) lost[index(begin / range)] = 1;
+      if (!finite(positions[i]) && own.owns(i)) lost[index(begin / range)] = 1;
     }
   });
-  if (std::count(lost.begin(), lost.end(), 1) > 0)
-    for (std::size_t i = 0; i < positions.size(); ++i)
+  own.ranks->together([&] {
+    if (std::count(lost.begin(), lost.end(), 1) == 0) return;
+    for (auto i = index(own.first); i < index(own.last); ++i)
       if (!finite(positions[i]))
         throw BlowUpError(fmt::format("the position of particle {} at t = {:.6g} is not finite",
                                       particles_.id[i], time),
                           particles_.id[i]);
+  });
   wrap_sheared(stage);
   if (!particles_.bodies.empty()) place_arms(stage);
 }
@@ -66,6 +69,7 @@ void Motion<D>::check_paths(const std::vector<Vec<D>>& velocity, double dt) cons
   const auto too_far = [&](std::size_t i, int c) {
     return !(std::abs(dt * velocity[i][c]) < 0.5 * box_.size[c]);
   };
+  const Share own = particles_.owned();
   std::vector<char> found(ranges(n), 0);
   parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
     bool any = false;
@@ -73,15 +77,17 @@ void Motion<D>::check_paths(const std::vector<Vec<D>>& velocity, double dt) cons
       for (int c = 0; c < D; ++c) any = any || too_far(i, c);
     found[index(begin / range)] = any ? 1 : 0;
   });
-  if (std::count(found.begin(), found.end(), 1) == 0) return;
-  for (std::size_t i = 0; i < velocity.size(); ++i)
-    for (int c = 0; c < D; ++c)
-      if (too_far(i, c))
-        throw BlowUpError(
-            fmt::format("particle {} would move {:.3g} in direction {}, more than half the "
-                        "box ({:.3g})",
-                        particles_.id[i], dt * velocity[i][c], "xyz"[c], box_.size[c]),
-            particles_.id[i]);
+  own.ranks->together([&] {
+    if (std::count(found.begin(), found.end(), 1) == 0) return;
+    for (auto i = index(own.first); i < index(own.last); ++i)
+      for (int c = 0; c < D; ++c)
+        if (too_far(i, c))
+          throw BlowUpError(
+              fmt::format("particle {} would move {:.3g} in direction {}, more than half the "
+                          "box ({:.3g})",
+                          particles_.id[i], dt * velocity[i][c], "xyz"[c], box_.size[c]),
+              particles_.id[i]);
+  });
 }
 
 template <int D>
@@ -89,16 +95,18 @@ std::vector<Vec<D>> Motion<D>::displaced(const std::vector<Vec<D>>& velocity, do
                                          std::int64_t& crossings) {
   check_paths(velocity, dt);
   const auto n = static_cast<std::int64_t>(velocity.size());
+  const Share own = particles_.owned();
   std::vector<Vec<D>> r = particles_.position;
   std::vector<std::int64_t> caught(ranges(n), 0);
   parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = index(begin); i < index(end); ++i) {
       r[i] += dt * velocity[i];
       if (!box_.shear) box_.wrap(r[i]);
-      if (particles_.is_free(i) && surroundings_.confine(r[i])) ++caught[index(begin / range)];
+      if (particles_.is_free(i) && surroundings_.confine(r[i]) && own.owns(i))
+        ++caught[index(begin / range)];
     }
   });
-  for (const std::int64_t count : caught) crossings += count;
+  crossings += own.ranks->sum(std::accumulate(caught.begin(), caught.end(), std::int64_t{0}));
   const Box<D> box = box_.at(t + dt);
   for (std::size_t b = 0; b < particles_.bodies.size(); ++b) {
     RigidPose<D> pose = particles_.bodies[b].pose;
@@ -110,6 +118,7 @@ std::vector<Vec<D>> Motion<D>::displaced(const std::vector<Vec<D>>& velocity, do
 template <int D>
 std::int64_t Motion<D>::move(const std::vector<Vec<D>>& velocity, double dt, double t) {
   check_paths(velocity, dt);
+  const Share own = particles_.owned();
   const Box<D> box = moved_in_ = box_.at(t + dt);
   const std::vector<std::int32_t> images_before = moving_images();
   std::vector<std::size_t> moved;
@@ -122,7 +131,7 @@ std::int64_t Motion<D>::move(const std::vector<Vec<D>>& velocity, double dt, dou
       particles_.position[i] += dt * velocity[i];
       particles_.velocity[i] = velocity[i];
       box.wrap(particles_.position[i], particles_.image[i]);
-      if (particles_.is_free(i) && surroundings_.confine(particles_.position[i]))
+      if (particles_.is_free(i) && surroundings_.confine(particles_.position[i]) && own.owns(i))
         ++caught[index(begin / range)];
     }
   });
@@ -131,11 +140,11 @@ std::int64_t Motion<D>::move(const std::vector<Vec<D>>& velocity, double dt, dou
     // The mirror does not turn bodies back: a constituent outside the box is an alarm.
     for (const std::int32_t p : dofs().constituents(b)) {
       Vec<D> r = particles_.position[index(p)];
-      if (surroundings_.confine(r)) ++caught.front();
+      if (surroundings_.confine(r) && own.owns(std::int64_t{p})) ++caught.front();
     }
   }
   leave_images(images_before);
-  return std::accumulate(caught.begin(), caught.end(), std::int64_t{0});
+  return own.ranks->sum(std::accumulate(caught.begin(), caught.end(), std::int64_t{0}));
 }
 
 template <int D>

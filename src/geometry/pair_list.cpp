@@ -198,13 +198,14 @@ PairList<D>::PairList(const Box<D>& box, double cutoff, std::optional<double> sk
 }
 
 template <int D>
-double PairList<D>::largest_displacement(std::span<const Vec<D>> positions) const {
+double PairList<D>::largest_displacement(std::span<const Vec<D>> positions,
+                                         const Share& share) const {
   constexpr std::int64_t block = 4096;
   const auto n = static_cast<std::int64_t>(positions.size());
   std::vector<double> square(index((n + block - 1) / block));
   parallel_ranges(n, block, [&](std::int64_t begin, std::int64_t end) {
     double most = 0.0;
-    for (auto i = index(begin); i < index(end); ++i) {
+    for (auto i = index(std::max(begin, share.first)); i < index(share.end(end)); ++i) {
       const Vec<D> d = box_.separation(positions[i], reference_[i]);
       // A coordinate that is no number is infinitely far away.
       most = dot(d, d) <= most ? most : dot(d, d) > most ? dot(d, d) : HUGE_VAL;
@@ -217,10 +218,10 @@ double PairList<D>::largest_displacement(std::span<const Vec<D>> positions) cons
 }
 
 template <int D>
-bool PairList<D>::update(std::span<const Vec<D>> positions) {
+bool PairList<D>::update(std::span<const Vec<D>> positions, const Share& share) {
   ++updates_;
   if (!reference_.empty() && reference_.size() == positions.size()) {
-    const double displacement = largest_displacement(positions);
+    const double displacement = share.ranks->largest(largest_displacement(positions, share));
     if (displacement <= 0.5 * skin_ && skin_ > 0.0) return false;
     if (automatic_) choose_skin(displacement / static_cast<double>(updates_));
   }

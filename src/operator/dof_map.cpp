@@ -1,5 +1,7 @@
 #include "odpd/operator/dof_map.h"
 
+#include <algorithm>
+
 #include "odpd/core/index.h"
 
 namespace odpd {
@@ -14,7 +16,7 @@ std::span<const double> flat(std::span<const Vec<D>> v) {
 }  // namespace
 
 template <int D>
-DofMap<D>::DofMap(const Particles<D>& particles) {
+DofMap<D>::DofMap(const Particles<D>& particles) : owned_(particles.owned()) {
   const auto n = index(particles.size());
   std::vector<std::int32_t> index_of;
   for (const RigidBody<D>& body : particles.bodies) {
@@ -32,6 +34,24 @@ DofMap<D>::DofMap(const Particles<D>& particles) {
 }
 
 template <int D>
+Share DofMap<D>::share() const {
+  Share nodes_of_rank = run_of(free_particles());
+  nodes_of_rank.first += bodies();
+  nodes_of_rank.last += bodies();
+  if (owned_.ranks->rank() == 0) nodes_of_rank.first = 0;
+  if (owned_.ranks->rank() + 1 == owned_.ranks->size()) nodes_of_rank.last = nodes();
+  return nodes_of_rank;
+}
+
+template <int D>
+Share DofMap<D>::run_of(std::span<const std::int32_t> particles) const {
+  const auto place = [&](std::int64_t particle) {
+    return std::lower_bound(particles.begin(), particles.end(), particle) - particles.begin();
+  };
+  return {owned_.ranks, place(owned_.first), place(owned_.last)};
+}
+
+template <int D>
 void DofMap<D>::gather(std::span<const Vec<D>> arms, std::span<const Vec<D>> forces,
                        std::vector<double>& q) const {
   q.resize(index(unknowns()));
@@ -40,6 +60,7 @@ void DofMap<D>::gather(std::span<const Vec<D>> arms, std::span<const Vec<D>> for
     Vec<D> force{}, moment{};
     for (const std::int32_t particle : body_[b]) {
       const auto p = index(particle);
+      if (!owned_.owns(p)) continue;
       force += forces[p];
       moment += torque(arms[p], forces[p]);
     }
@@ -48,6 +69,9 @@ void DofMap<D>::gather(std::span<const Vec<D>> arms, std::span<const Vec<D>> for
       q[b * D + c] = moment.x[c];
     }
   }
+  if (unknown_ == 0) return;
+  owned_.ranks->sum(std::span(q).first(unknown_ * D));
+  owned_.ranks->sum(std::span(q).last(unknown_ * D));
 }
 
 template <int D>

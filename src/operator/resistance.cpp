@@ -56,6 +56,7 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
                             const Particles<D>& particles, std::span<const Vec<D>> positions,
                             double shift, double stiffness_time, double bond_time) {
   nodes_ = dofs.sites();
+  share_ = dofs.site_share();
   shift_ = shift;
   stiffness_time_ = stiffness_time;
   bond_time_ = bond_time;
@@ -64,7 +65,7 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
   weigh_edges(network);
   count_links(network, dofs);
   resize_afresh(links_, index(start_.back()));
-  const bool anchored = shift != 0.0 || dofs.sites() < dofs.particles();
+  const bool anchored = shift != 0.0 || share_.ranks->any(dofs.sites() < dofs.particles());
   anchor_.assign(anchored ? n_nodes : 0, Block{});
   diagonal_.resize(n_nodes);
   parent_.resize(n_nodes);
@@ -75,13 +76,15 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
     for (std::size_t c = 0; c < D; ++c) positions_[n * D + c] = positions[index(particle)].x[c];
     fill_row(n, particle, network, dofs);
   });
-  translations_are_null_ = std::all_of(anchor_.begin(), anchor_.end(), [](const Block& block) {
-    return std::all_of(block.begin(), block.end(), [](double entry) { return entry == 0.0; });
-  });
+  const auto own_anchors = share_.part(std::span(anchor_), 1);
+  translations_are_null_ =
+      share_.ranks->all(std::all_of(own_anchors.begin(), own_anchors.end(), [](const Block& block) {
+        return std::all_of(block.begin(), block.end(), [](double entry) { return entry == 0.0; });
+      }));
   if (translations_are_null_) anchor_.clear();
   if (shift != 0.0) return;
-  check_rattlers(network, dofs, particles);
-  check_clusters(dofs, particles);
+  share_.ranks->together([&] { check_rattlers(network, dofs, particles); });
+  share_.ranks->together([&] { check_clusters(dofs, particles); });
 }
 
 template <int D>
@@ -165,7 +168,8 @@ void Resistance<D>::check_rattlers(const PairNetwork<D>& network, const DofMap<D
   // Below this a block inverse would amplify rounding beyond any tolerance in use.
   constexpr double singular = 1e-12;
   std::atomic<std::int64_t> first{nodes_};
-  parallel_for(nodes_, [&](std::int64_t node) {
+  parallel_for(share_.end(nodes_) - share_.first, [&](std::int64_t own) {
+    const std::int64_t node = share_.first + own;
     const auto n = index(node);
     if (relative_determinant<D>(diagonal_[n].data()) > singular) return;
     if (!particles.is_free(index(dofs.particle_of(n)))) return;  // held by its body

@@ -85,11 +85,17 @@ void RigidResistance<D>::add_unused(std::size_t node, double* block) const {
 template <int D>
 void RigidResistance<D>::block_diagonal(std::span<double> blocks) const {
   std::fill(blocks.begin(), blocks.end(), 0.0);
+  const Share own_sites = sites_.share();
   // No edges inside a body: its constituents' diagonal blocks are all that falls on its own.
-  for (std::size_t s = 0; s < node_.size(); ++s)
+  for (std::size_t s = 0; s < node_.size(); ++s) {
+    if (node_[s] < 0 && !own_sites.owns(s)) continue;
     for (const Mover& m : movers(s))
       add_triple_product<D>(m.map.data(), sites_.diagonal()[s].data(), m.map.data(),
                             &blocks[m.node * D * D]);
+  }
+  const std::size_t of_bodies = index(dofs_->bodies()) * D * D;
+  own_sites.ranks->sum(blocks.first(of_bodies));
+  own_sites.ranks->sum(blocks.last(of_bodies));
   for (std::size_t n = 0; n < index(nodes()); ++n) add_unused(n, &blocks[n * D * D]);
 }
 

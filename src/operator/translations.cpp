@@ -13,11 +13,24 @@ constexpr std::int64_t nodes_per_sum = 1024;
 
 }  // namespace
 
-std::vector<double> Translations::sums(std::span<const double> x) const {
+auto Translations::own(std::size_t size, const Share& share) const -> Range {
+  const auto front = static_cast<std::int64_t>(in_front(size)) / block;
+  const std::int64_t begin = std::clamp<std::int64_t>(share.first - front, 0, nodes);
+  return {begin, std::clamp<std::int64_t>(share.end(front + nodes) - front, begin, nodes)};
+}
+
+std::int64_t Translations::count(std::size_t size, const Share& share) const {
+  const Range range = own(size, share);
+  return share.ranks->sum(range.last - range.first);
+}
+
+std::vector<double> Translations::sums(std::span<const double> x, const Share& share) const {
   const std::span<const double> part = x.subspan(in_front(x.size()));
+  const Range range = own(x.size(), share);
   std::vector<double> sum(index(components), 0.0);
-  for (std::int64_t n = 0; n < nodes; ++n)
+  for (std::int64_t n = range.first; n < range.last; ++n)
     for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += part[first(n) + c];
+  share.ranks->sum(std::span(sum));
   return sum;
 }
 
@@ -28,22 +41,26 @@ void Translations::add(std::span<const double> a, std::span<double> x) const {
   });
 }
 
-void Translations::remove_mean(std::span<double> x) const {
+void Translations::remove_mean(std::span<double> x, const Share& share) const {
   if (nodes == 0) return;
   const std::span<double> part = x.subspan(in_front(x.size()));
   const auto count = index(components);
   // Sums in fixed blocks of nodes, whatever the threads, as fixed_sum does.
-  const std::int64_t blocks = (nodes + nodes_per_sum - 1) / nodes_per_sum;
+  const Range range = own(x.size(), share);
+  const std::int64_t blocks = (range.last - range.first + nodes_per_sum - 1) / nodes_per_sum;
   std::vector<double> partial(index(blocks) * count, 0.0);
   parallel_for(blocks, [&](std::int64_t s) {
     double* const sum = &partial[index(s) * count];
-    const std::int64_t end = std::min(nodes, (s + 1) * nodes_per_sum);
-    for (std::int64_t n = s * nodes_per_sum; n < end; ++n)
+    const std::int64_t begin = range.first + s * nodes_per_sum;
+    const std::int64_t end = std::min(range.last, begin + nodes_per_sum);
+    for (std::int64_t n = begin; n < end; ++n)
       for (std::size_t c = 0; c < count; ++c) sum[c] += part[first(n) + c];
   });
-  std::vector<double> mean(count, 0.0);
+  std::vector<double> mean(count + 1, 0.0);  // and the nodes
   for (std::size_t k = 0; k < partial.size(); ++k) mean[k % count] += partial[k];
-  for (double& m : mean) m /= static_cast<double>(nodes);
+  mean.back() = static_cast<double>(range.last - range.first);
+  share.ranks->sum(std::span(mean));
+  for (std::size_t c = 0; c < count; ++c) mean[c] /= mean.back();
   parallel_for(nodes, [&](std::int64_t n) {
     for (std::size_t c = 0; c < count; ++c) part[first(n) + c] -= mean[c];
   });

@@ -31,7 +31,12 @@ std::int64_t DensityColumns::bytes() const {
 
 template <int D>
 double PairNetwork<D>::energy() const {
-  return densities.empty() ? u.sum() : u.sum() + fixed_sum(densities.psi);
+  if (owned.alone()) return densities.empty() ? u.sum() : u.sum() + fixed_sum(densities.psi);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < i.size(); ++k) sum += counts(k) ? u[k] : 0.0;
+  for (auto p = index(owned.first); p < index(owned.end(std::ssize(densities.psi))); ++p)
+    sum += densities.psi[p];
+  return owned.ranks->sum(sum);
 }
 
 template <int D>

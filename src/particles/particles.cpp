@@ -26,13 +26,32 @@ void Particles<D>::carry_inertia() {
 }
 
 template <int D>
+std::vector<Vec<D>>& Particles<D>::carry(const std::string& name) const {
+  const auto [place, added] = carried_.try_emplace(name, position.size());
+  if (added) fields_.add(name, &place->second);
+  return place->second;
+}
+
+template <int D>
+std::vector<std::int32_t> Particles<D>::owned_by_identity() const {
+  std::vector<std::int32_t> own = index_of_id();
+  const Share share = owned();
+  if (!share.alone())
+    std::erase_if(own, [&](std::int32_t i) { return !share.owns(std::int64_t{i}); });
+  return own;
+}
+
+template <int D>
 std::int64_t Particles<D>::free_count() const {
-  return std::count(group.begin(), group.end(), 0);
+  const std::span<const std::int32_t> own = owned().part(std::span(group), 1);
+  return ranks_->sum(std::int64_t{std::count(own.begin(), own.end(), 0)});
 }
 
 template <int D>
 std::int64_t Particles<D>::moving_count() const {
-  return std::count_if(group.begin(), group.end(), [](std::int32_t g) { return g <= 0; });
+  const std::span<const std::int32_t> own = owned().part(std::span(group), 1);
+  return ranks_->sum(
+      std::int64_t{std::count_if(own.begin(), own.end(), [](std::int32_t g) { return g <= 0; })});
 }
 
 template <int D>

@@ -245,7 +245,7 @@ void relax(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& 
   PairNetwork<D> network;
   const double longest = 0.05 * model.cutoff();
   for (std::int64_t sweep = 0; sweep < sweeps; ++sweep) {
-    list.update(particles.position);
+    list.update(particles.position, particles.owned());
     model.write_edges(list, box, particles.position, particles, network);
     std::vector<Vec<D>> force(particles.position.size());
     std::vector<double> stiffness(particles.position.size(), 0.0);
@@ -273,18 +273,20 @@ void draw_velocities(std::uint64_t seed, double kT, double mass, bool conserved,
   if (mass == 0.0) return;
   particles.carry_inertia();
   const CounterRandom random(seed, Stream::start_velocities);
+  const Share own = particles.owned();
   std::int64_t movers = 0;
   for (std::size_t i = 0; i < particles.position.size(); ++i)
-    movers += particles.is_known(i) ? 0 : 1;
-  const double share = 1.0 / static_cast<double>(movers);
+    movers += particles.is_known(i) || !own.owns(i) ? 0 : 1;
+  const double share = 1.0 / static_cast<double>(own.ranks->sum(movers));
   Vec<D> mean{};
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
     if (particles.is_known(i)) continue;
     const auto w = random.normals(0, 0, static_cast<std::uint64_t>(particles.id[i]), 0);
     for (std::size_t c = 0; c < D; ++c)
       particles.end_velocity[i].x[c] = std::sqrt(kT / mass) * w[c];
-    mean += share * particles.end_velocity[i];
+    if (own.owns(i)) mean += share * particles.end_velocity[i];
   }
+  own.ranks->sum(std::span(mean.x));
   for (std::size_t i = 0; i < particles.position.size() && conserved; ++i)
     if (!particles.is_known(i)) particles.end_velocity[i] -= mean;
   // The rigid part of independent velocities has the right variance.

@@ -28,11 +28,12 @@ std::shared_ptr<const PairModel<D>> model_of(const SceneSettings<D>& settings) {
 }  // namespace
 
 template <int D>
-Scene<D>::Scene(SceneSettings<D> settings)
+Scene<D>::Scene(SceneSettings<D> settings, const Communicator& ranks)
     : settings_(std::move(settings)),
       model_(model_of(settings_)),
       pair_moments_(odpd::pair_moments(*model_, settings_.species.size())),
       largest_kT_(odpd::largest_kT(pair_moments_)) {
+  particles_.share_among(ranks);
   place_walls(settings_, particles_);
   particles_.walls = static_cast<std::int32_t>(settings_.walls.size());
   body_kind_ = place_bodies(settings_.bodies, settings_.box, fluid_low(), fluid_high(),
@@ -116,12 +117,13 @@ double Scene<D>::potential_energy_at(const Vec<D>& r) const {
 template <int D>
 double Scene<D>::potential_energy(const Particles<D>& particles, std::span<const Vec<D>> positions,
                                   std::vector<double>& laplacian) const {
+  const Share own = particles.owned();
   double energy = 0.0;
   for (const auto& wall : settings_.walls)
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const double u = particles.is_known(i) ? 0.0 : wall_energy(wall, positions[i]);
       if (!(u > 0.0)) continue;
-      energy += u;
+      if (own.owns(i)) energy += u;
       laplacian[i] += wall.stiffness;
     }
   return energy;
@@ -133,13 +135,16 @@ void Scene<D>::add_driving_forces(const Particles<D>& particles, std::span<const
   Vec<D> net{};
   for (std::size_t b = 0; b < particles.bodies.size(); ++b) net += body_load(b, t).force;
   if (settings_.largest_force() == 0.0 && net == Vec<D>{}) return;
+  const Share own = particles.owned();
+  if (own.ranks->rank() > 0) net = {};  // bodies count once
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (particles.is_known(i)) continue;
     const Vec<D> f = settings_.force_at(positions[i]);
     force[i] += f;
-    net += f;
+    if (own.owns(i)) net += f;
   }
   if (settings_.held()) return;
+  own.ranks->sum(std::span(net.x));
   // Nothing takes up a net force (of bodies that are pushed, of a wave on these particles), so it would have no answer.
   const Vec<D> share = 1.0 / static_cast<double>(particles.free_count()) * net;
   for (std::size_t i = 0; i < positions.size(); ++i)

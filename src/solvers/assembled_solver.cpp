@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "odpd/core/index.h"
+#include "odpd/core/error.h"
 #include "odpd/core/timer.h"
 #include "odpd/solvers/backends.h"
 #include "odpd/solvers/preconditioner.h"
@@ -11,6 +11,8 @@ namespace odpd {
 
 void AssembledSolver::set_up() {
   response_.clear();
+  if (!system_->share().alone())
+    throw SolverError(name() + ": needs the whole matrix on one rank: use pcg on several");
   require_definite_diagonal(*system_);
   const Stopwatch watch;
   const BlockCsr& a = system_->matrix();

@@ -52,6 +52,10 @@ class Elements {
     if (resistance.transverse()) edges_.across = &resistance.across().front().zeta_perp;
   }
   void add_node(std::int64_t n);
+  /// What all ranks added.
+  void add_ranks(const Communicator& ranks) {
+    ranks.sum(std::span(sums_.data(), index(sums_.size())));
+  }
   void add_to(GridOperator<D>& a) const;
 
  private:
@@ -149,10 +153,13 @@ GridPosition<D> locate(const GridShape<D>& shape, const double* position) {
 
 template <int D>
 FrictionSpread friction_spread(const Resistance<D>& resistance) {
-  double moment = 0.0, total = 0.0, ties = 0.0, tied = 0.0;
+  const Share share = resistance.share();
+  std::array<double, 4> sums{};
+  auto& [moment, total, ties, tied] = sums;
   // Some hundred particles tell it well enough.
   const std::int64_t step = std::max<std::int64_t>(1, resistance.nodes() / 256);
   for (std::int64_t n = 0; n < resistance.nodes(); n += step) {
+    if (!share.owns(n)) continue;
     const auto node = index(n);
     const Vec<D> own = position_of(resistance, node);
     double sum = 0.0, squares = 0.0;
@@ -171,6 +178,7 @@ FrictionSpread friction_spread(const Resistance<D>& resistance) {
     ties += sum * sum / squares;
     tied += 1.0;
   }
+  share.ranks->sum(std::span(sums));
   if (!(total > 0.0)) return {};
   return {std::sqrt(moment / total), ties / tied};
 }
@@ -178,7 +186,9 @@ FrictionSpread friction_spread(const Resistance<D>& resistance) {
 template <int D>
 GridOperator<D> galerkin(const Resistance<D>& resistance, const GridShape<D>& shape) {
   Elements<D> elements(shape, resistance);
-  for (std::int64_t n = 0; n < resistance.nodes(); ++n) elements.add_node(n);
+  const Share share = resistance.share();
+  for (std::int64_t n = share.first; n < share.end(resistance.nodes()); ++n) elements.add_node(n);
+  elements.add_ranks(*share.ranks);
   GridOperator<D> a(shape);
   elements.add_to(a);
   return a;

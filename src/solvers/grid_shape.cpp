@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "odpd/core/index.h"
 
@@ -60,17 +61,21 @@ GridShape<D> GridShape<D>::coarser() const {
 }
 
 template <int D>
-GridShape<D> choose_grid(const Box<D>& box, std::span<const double> positions, double spacing) {
+GridShape<D> choose_grid(const Box<D>& box, std::span<const double> positions, double spacing,
+                         const Share& share) {
   typename GridShape<D>::Index cells{};
   Vec<D> low{}, length = box.size;
   for (int c = 0; c < D; ++c) {
     if (!box.is_periodic(c) && !positions.empty()) {
       const auto first = index(c);
-      double least = positions[first], most = positions[first];
-      for (std::size_t k = first; k < positions.size(); k += D) {
-        least = std::min(least, positions[k]);
-        most = std::max(most, positions[k]);
+      const std::span<const double> own = share.part(positions, D);
+      double least = std::numeric_limits<double>::infinity(), most = -least;
+      for (std::size_t k = first; k < own.size(); k += D) {
+        least = std::min(least, own[k]);
+        most = std::max(most, own[k]);
       }
+      least = share.ranks->smallest(least);
+      most = share.ranks->largest(most);
       low[c] = least;
       length[c] = std::max(most - least, 1e-6 * box.size[c]);
     }
@@ -92,7 +97,7 @@ GridShape<D> choose_grid(const Box<D>& box, std::span<const double> positions, d
 
 template struct GridShape<2>;
 template struct GridShape<3>;
-template GridShape<2> choose_grid<2>(const Box<2>&, std::span<const double>, double);
-template GridShape<3> choose_grid<3>(const Box<3>&, std::span<const double>, double);
+template GridShape<2> choose_grid<2>(const Box<2>&, std::span<const double>, double, const Share&);
+template GridShape<3> choose_grid<3>(const Box<3>&, std::span<const double>, double, const Share&);
 
 }  // namespace odpd

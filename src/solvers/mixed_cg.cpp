@@ -75,12 +75,16 @@ class MixedCg : public CgEngine {
   Outcome iterate(std::span<const double> b, std::span<double> x, double goal,
                   std::int64_t most_iterations, Solver::Attempt& result);
   std::int64_t blocks() const { return (rows_.places() + block_places - 1) / block_places; }
+  /// A block's part in sums is that of the rank that owns its first node: places are sorted within blocks only.
+  bool owns(std::int64_t block) const { return share_.owns(block * block_places); }
+  double sum_of_blocks();
   std::int64_t end_of(std::int64_t block) const {
     return std::min(rows_.places(), (block + 1) * block_places);
   }
 
   std::string preconditioner_;
   const Resistance<D>* resistance_ = nullptr;
+  Share share_;  // its nodes
   SlicedRows<D> rows_;
   Multilevel<D> grid_;
   bool with_grid_ = false;
@@ -98,6 +102,7 @@ class MixedCg : public CgEngine {
 template <int D>
 void MixedCg<D>::set_up(const System& system) {
   resistance_ = &dynamic_cast<const Resistance<D>&>(system);
+  share_ = resistance_->share();
   rows_.pack(*resistance_);
   note_.clear();
   with_grid_ = preconditioner_ == "multilevel" || (preconditioner_ == "auto" && grid_pays());
@@ -112,17 +117,19 @@ void MixedCg<D>::set_up(const System& system) {
 
 template <int D>
 bool MixedCg<D>::grid_pays() const {
-  if (resistance_->nodes() < fewest_for_grid<D>) return false;
-  double trace = 0.0;  // of some nodes' blocks: their mean need not be exact
+  if (share_.count(resistance_->nodes()) < fewest_for_grid<D>) return false;
+  std::array<double, 2>
+      sum{};  // trace of some nodes' blocks, and how many: their mean need not be exact
   constexpr std::size_t sample = 1000;
   const auto blocks = resistance_->diagonal();
-  std::size_t taken = 0;
   for (std::size_t n = 0; n < blocks.size();
        n += std::max<std::size_t>(1, blocks.size() / sample)) {
-    for (std::size_t c = 0; c < D; ++c) trace += blocks[n][c * D + c];
-    ++taken;
+    if (!share_.owns(n)) continue;
+    for (std::size_t c = 0; c < D; ++c) sum[0] += blocks[n][c * D + c];
+    sum[1] += 1.0;
   }
-  const double mean = trace / static_cast<double>(D * taken) - resistance_->shift();
+  share_.ranks->sum(std::span(sum));
+  const double mean = sum[0] / (D * sum[1]) - resistance_->shift();
   return resistance_->shift() < shift_without_grid * mean;
 }
 
@@ -136,18 +143,21 @@ void MixedCg<D>::invert_diagonal() {
         inverse_.data() + place / slice_places * slice_places * triangle + place % slice_places;
     typename Resistance<D>::Block m{};
     if (node >= 0) m = inverse_of(resistance_->diagonal()[index(node)]);
-    if (std::isnan(m[0])) lower(first_bad, node);
+    if (std::isnan(m[0]) && share_.owns(std::int64_t{node})) lower(first_bad, node);
     for (std::size_t row = 0; row < D; ++row)
       for (std::size_t col = row; col < D; ++col, out += slice_places)
         *out = static_cast<float>(m[row * D + col]);
   });
-  if (first_bad < resistance_->nodes()) reject_block(first_bad);
+  share_.ranks->together([&] {
+    if (first_bad < resistance_->nodes()) reject_block(first_bad);
+  });
 }
 
 /// residual_ := Pi (b - A x); returns its norm.
 template <int D>
 double MixedCg<D>::true_residual(std::span<const double> b, std::span<const double> x) {
-  if (std::all_of(x.begin(), x.end(), [](double v) { return v == 0.0; })) {
+  const auto own = share_.part(x, D);
+  if (share_.ranks->all(std::all_of(own.begin(), own.end(), [](double v) { return v == 0.0; }))) {
     std::copy(b.begin(), b.end(), residual_.begin());
   } else {
     resistance_->apply(x, residual_);
@@ -155,7 +165,7 @@ double MixedCg<D>::true_residual(std::span<const double> b, std::span<const doub
                  [&](std::int64_t i) { residual_[index(i)] = b[index(i)] - residual_[index(i)]; });
   }
   resistance_->project(residual_);
-  return fixed_norm(residual_);
+  return resistance_->norm(residual_);
 }
 
 template <int D>
@@ -181,14 +191,22 @@ void MixedCg<D>::flush(std::span<double> x, double scale) {
   });
 }
 
+/// Of sums_, on all ranks.
+template <int D>
+double MixedCg<D>::sum_of_blocks() {
+  double sum = 0.0;
+  for (std::int64_t block = 0; block < blocks(); ++block)
+    if (owns(block)) sum += sums_[index(block)];
+  return share_.ranks->sum(sum);
+}
+
 /// q = A p; returns p . q.
 template <int D>
 double MixedCg<D>::product() {
   parallel_blocks(blocks(), [&](std::int64_t block) {
     sums_[index(block)] = rows_.product(p_.data(), q_.data(), block * block_places, end_of(block));
   });
-  double sum = 0.0;
-  for (std::int64_t block = 0; block < blocks(); ++block) sum += sums_[index(block)];
+  const double sum = sum_of_blocks();
   if (resistance_->holds_centre_of_mass()) project(q_);
   return sum;
 }
@@ -207,15 +225,18 @@ CgSums MixedCg<D>::update(double alpha) {
           z_.data(), first, last);
       sums_[index(2 * (first / block_places))] = sums.rr;
       sums_[index(2 * (first / block_places) + 1)] = sums.rz;
-      if (with_grid_) grid_.restrict_chunk(chunk, r_.data(), first, last);
+      if (with_grid_ && owns(first / block_places))
+        grid_.restrict_chunk(chunk, r_.data(), first, last);
     }
   });
-  CgSums total{0.0, 0.0};
+  std::array<double, 2> total{};
   for (std::int64_t block = 0; block < blocks(); ++block) {
-    total.rr += sums_[index(2 * block)];
-    total.rz += sums_[index(2 * block + 1)];
+    if (!owns(block)) continue;
+    total[0] += sums_[index(2 * block)];
+    total[1] += sums_[index(2 * block + 1)];
   }
-  return total;
+  share_.ranks->sum(std::span(total));
+  return {total[0], total[1]};
 }
 
 /// out = keep z - step D^-1 A in, z = D^-1 r; returns z . A in.
@@ -228,9 +249,7 @@ double MixedCg<D>::local_step(double keep, double step, const FloatArray& in, Fl
         inverse_.data(), static_cast<float>(keep), static_cast<float>(step), z_.data(), out.data(),
         first, last);
   });
-  double sum = 0.0;
-  for (std::int64_t block = 0; block < blocks(); ++block) sum += sums_[index(block)];
-  return sum;
+  return sum_of_blocks();
 }
 
 /// With z = D^-1 r and r . z given: the local part of the preconditioner in q, the grid's in its correction. Returns the product
@@ -271,12 +290,15 @@ void MixedCg<D>::turn(double beta) {
 /// v := Pi v over the occupied places.
 template <int D>
 void MixedCg<D>::project(FloatArray& v) {
-  std::array<double, D> mean{};
+  std::array<double, D + 1> mean{};  // and the nodes
   for (std::int64_t place = 0; place < rows_.places(); ++place)
-    if (rows_.node_of_place()[index(place)] >= 0)
+    if (rows_.node_of_place()[index(place)] >= 0 && owns(place / block_places)) {
       for (std::int64_t c = 0; c < D; ++c)
         mean[index(c)] += static_cast<double>(v.data()[place * stride + c]);
-  for (double& m : mean) m /= static_cast<double>(resistance_->nodes());
+      mean.back() += 1.0;
+    }
+  share_.ranks->sum(std::span(mean));
+  for (std::size_t c = 0; c < D; ++c) mean[c] /= mean.back();
   parallel_for(rows_.places(), [&](std::int64_t place) {
     if (rows_.node_of_place()[index(place)] < 0) return;
     for (std::int64_t c = 0; c < D; ++c)
@@ -349,7 +371,7 @@ template <int D>
 Solver::Attempt MixedCg<D>::attempt(std::span<const double> b, std::span<double> x,
                                     double tolerance, std::int64_t most_iterations) {
   Solver::Attempt result;
-  const double goal = tolerance * fixed_norm(b);
+  const double goal = tolerance * resistance_->norm(b);
   guess_.assign(x.begin(), x.end());
   Outcome outcome = iterate(b, x, goal, most_iterations, result);
   if (with_grid_ && outcome == Outcome::gave_up) {

@@ -44,6 +44,7 @@ LocalPart chebyshev(std::size_t degree, double low, double high, double weight) 
 
 template <int D>
 void Multilevel<D>::set_up(const Resistance<D>& resistance, const SlicedRows<D>& rows) {
+  ranks_ = resistance.share().ranks;
   const bool outdated =
       grid_.empty() || grid_.null_translations() != resistance.translations_are_null() ||
       shift_ != resistance.shift() || stiffness_time_ != resistance.stiffness_time();
@@ -66,15 +67,17 @@ void Multilevel<D>::note_rate(double decades_per_iteration) {
 
 template <int D>
 void Multilevel<D>::build(const Resistance<D>& resistance) {
+  const Share share = resistance.share();
   const FrictionSpread friction = friction_spread(resistance);
   ties_ = friction.ties;
   double spacing =
       friction.range > 0.0 ? spacing_per_range * friction.range : resistance.box().size[0];
-  GridShape<D> shape = choose_grid(resistance.box(), resistance.positions(), spacing);
+  GridShape<D> shape = choose_grid(resistance.box(), resistance.positions(), spacing, share);
   // A sparse box: more points than particles would cost more than they help.
-  while (shape.points() > std::max<std::int64_t>(resistance.nodes(), 1 << D)) {
+  const std::int64_t nodes = share.count(resistance.nodes());
+  while (shape.points() > std::max<std::int64_t>(nodes, 1 << D)) {
     spacing *= 1.25;
-    shape = choose_grid(resistance.box(), resistance.positions(), spacing);
+    shape = choose_grid(resistance.box(), resistance.positions(), spacing, share);
   }
   grid_.set_up(galerkin(resistance, shape), resistance.translations_are_null());
   shift_ = resistance.shift();
@@ -160,6 +163,7 @@ double Multilevel<D>::cycle() {
     const auto k = index(chunk);
     for (std::int64_t i = touched_begin_[k]; i < touched_end_[k]; ++i) sum[i] += part[i];
   }
+  ranks_->sum(std::span(sum, index(correction_.size())));
   // What arrived at a ghost belongs to the point that it copies.
   for (int c = 0; c < D; ++c) {
     if (!shape.periodic[index(c)]) continue;

@@ -51,25 +51,25 @@ double DoubleCg::start(std::span<const double> b, std::span<const double> x) {
   system_->apply(x, r_);
   parallel_for(system_->size(), [&](std::int64_t i) { r_[index(i)] = b[index(i)] - r_[index(i)]; });
   system_->project(r_);
-  return fixed_norm(r_);
+  return system_->norm(r_);
 }
 
 /// Iterates until the recursive residual is below `goal`; sets ok, or leaves it and says why.
 void DoubleCg::cycle(std::span<double> x, double goal, std::int64_t most_iterations,
                      Solver::Attempt& result) {
-  const double first = fixed_norm(r_);
+  const double first = system_->norm(r_);
   double rho_before = 0.0;
   while (result.iterations < most_iterations) {
     ++result.iterations;
     preconditioner_.apply(r_, z_);
     system_->project(z_);
-    const double rho = fixed_dot(r_, z_);
+    const double rho = system_->inner_product(r_, z_);
     const double beta = rho_before == 0.0 ? 0.0 : rho / rho_before;
     parallel_for(system_->size(),
                  [&](std::int64_t i) { p_[index(i)] = z_[index(i)] + beta * p_[index(i)]; });
     system_->apply(p_, q_);
     system_->project(q_);
-    const double curvature = fixed_dot(p_, q_);
+    const double curvature = system_->inner_product(p_, q_);
     if (!(rho > 0.0) || !(curvature > 0.0)) {
       result.failure = std::isnan(rho) || std::isnan(curvature)
                            ? "numbers are no longer finite: the matrix has entries that are not"
@@ -82,7 +82,7 @@ void DoubleCg::cycle(std::span<double> x, double goal, std::int64_t most_iterati
       r_[index(i)] -= alpha * q_[index(i)];
     });
     rho_before = rho;
-    const double norm = fixed_norm(r_);
+    const double norm = system_->norm(r_);
     if (norm <= goal) {
       result.ok = true;
       return;
@@ -97,7 +97,7 @@ void DoubleCg::cycle(std::span<double> x, double goal, std::int64_t most_iterati
 Solver::Attempt DoubleCg::attempt(std::span<const double> b, std::span<double> x, double tolerance,
                                   std::int64_t most_iterations) {
   Solver::Attempt result;
-  const double goal = tolerance * fixed_norm(b);
+  const double goal = tolerance * system_->norm(b);
   double norm = start(b, x);
   // The recursive residual drifts from the true one: start over from the true one while that helps.
   while (norm > goal) {

@@ -64,12 +64,12 @@ double Picard::update(std::span<double> x) {
       x[i] += step_[i];
     });
   }
-  return options_.stopping == Stopping::increment ? fixed_norm(step_) : 0.0;
+  return options_.stopping == Stopping::increment ? system_->norm(step_) : 0.0;
 }
 
 Solver::Attempt Picard::attempt(std::span<const double> b, std::span<double> x, double tolerance) {
   Attempt result;
-  const double goal = tolerance * fixed_norm(b);
+  const double goal = tolerance * system_->norm(b);
   double first = 0.0;
   while (true) {
     system_->apply(x, residual_);
@@ -78,7 +78,7 @@ Solver::Attempt Picard::attempt(std::span<const double> b, std::span<double> x, 
       residual_[i] = b[i] - residual_[i];
     });
     system_->project(residual_);
-    const double norm = fixed_norm(residual_);
+    const double norm = system_->norm(residual_);
     if (result.iterations == 0) first = norm;
     if (!(norm <= growth_limit * first)) {
       result.failure =
@@ -90,7 +90,7 @@ Solver::Attempt Picard::attempt(std::span<const double> b, std::span<double> x, 
     if (result.iterations == iterations_left_) return result;
     ++result.iterations;
     const double increment = update(x);
-    if (options_.stopping == Stopping::increment && increment < tolerance * fixed_norm(x)) break;
+    if (options_.stopping == Stopping::increment && increment < tolerance * system_->norm(x)) break;
     if (norm == 0.0) break;
   }
   result.ok = true;

@@ -109,10 +109,14 @@ void BlockJacobi::set_up(const System& system) {
   block_ = system.block_size();
   inverse_ = block_diagonal(system);
   const std::size_t bb = index(block_ * block_);
-  for (std::int64_t node = 0; node < system.nodes(); ++node) {
-    const std::size_t at = index(node) * bb;
-    if (!invert_definite(std::span(inverse_).subspan(at, bb), block_)) reject_block(node);
-  }
+  const Share share = system.share();
+  share.ranks->together([&] {
+    for (std::int64_t node = 0; node < system.nodes(); ++node) {
+      const std::size_t at = index(node) * bb;
+      const bool good = invert_definite(std::span(inverse_).subspan(at, bb), block_);
+      if (!good && share.owns(node)) reject_block(node);
+    }
+  });
 }
 
 void BlockJacobi::apply(std::span<const double> r, std::span<double> z) const {

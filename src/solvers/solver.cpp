@@ -66,13 +66,14 @@ SolveReport Solver::solve(std::span<const double> b, std::span<double> x) {
   report.assembly_seconds = assembly_seconds_;
   load_.assign(b.begin(), b.end());
   system_->project(load_);
-  const double norm = fixed_norm(load_);
+  const double norm = system_->norm(load_);
   if (!std::isfinite(norm)) {
     report.failure = name() +
                      ": the right-hand side is not finite: look for overlapping particles, "
                      "extreme forces or a too large time step";
     report.residual = norm;
-  } else if (norm == 0.0 || (system_->projected() && norm <= projection_rounding * fixed_norm(b))) {
+  } else if (norm == 0.0 ||
+             (system_->projected() && norm <= projection_rounding * system_->norm(b))) {
     std::fill(x.begin(), x.end(), 0.0);
     report.converged = true;
   } else {
@@ -88,7 +89,9 @@ SolveReport Solver::solve(std::span<const double> b, std::span<double> x) {
 }
 
 void Solver::iterate(double norm, std::span<double> x, SolveReport& report) {
-  if (!all_finite(x)) std::fill(x.begin(), x.end(), 0.0);  // a guess need not be good
+  const Share share = system_->share();
+  if (!share.ranks->all(all_finite(share.part(x, system_->block_size()))))
+    std::fill(x.begin(), x.end(), 0.0);  // a guess need not be good
   system_->project(x);
   iterations_left_ = options_.max_iterations;
   Attempt last = attempt(load_, x, options_.tolerance);
@@ -133,13 +136,13 @@ Solver::Measured Solver::measure(std::span<double> x, double norm) {
   residual_.resize(x.size());
   system_->apply(x, residual_);
   Measured m;
-  m.curvature = fixed_dot(x, residual_);
+  m.curvature = system_->inner_product(x, residual_);
   parallel_for(static_cast<std::int64_t>(x.size()), [&](std::int64_t k) {
     const std::size_t i = index(k);
     residual_[i] = load_[i] - residual_[i];
   });
   system_->project(residual_);
-  m.residual = fixed_norm(residual_) / norm;
+  m.residual = system_->norm(residual_) / norm;
   return m;
 }
 

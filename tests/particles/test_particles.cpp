@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "odpd/core/error.h"
 #include "odpd/particles/particles.h"
 #include "support/dimensions.h"
 #include "support/errors.h"
 #include "support/memory_archive.h"
 #include "support/points.h"
+#include "support/thread_team.h"
 
 namespace {
 
@@ -113,6 +116,54 @@ TYPED_TEST(ParticlesTest, RefusesADamagedState) {
     damaged.integers.erase(name);
     EXPECT_THROW(load(damaged), odpd::IoError) << "without " << name;
   }
+}
+
+// What others keep per particle moves with it, is asked for by name, and goes into checkpoints.
+TYPED_TEST(ParticlesTest, CarryColumnsOfOthers) {
+  constexpr int D = TypeParam::D;
+  Particles<D> particles;
+  fill(particles, 5);
+  const Particles<D>& seen = particles;
+  std::vector<Vec<D>>& kept = seen.carry("kept");
+  EXPECT_EQ(kept, std::vector<Vec<D>>(5));
+  for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = particles.velocity[i];
+  particles.reorder({3, 1, 4, 0, 2});
+  EXPECT_EQ(kept, particles.velocity);
+  EXPECT_EQ(&seen.carry("kept"), &kept);
+  seen.carry("other");
+  fill(particles, 1);
+  EXPECT_EQ(kept.size(), 6U);
+  EXPECT_EQ(seen.carry("other").size(), 6U);
+  MemoryArchive archive;
+  particles.save(archive);
+  Particles<D> copy;
+  copy.carry("kept");
+  copy.load(archive);
+  EXPECT_EQ(copy.carry("kept"), kept);
+  Particles<D> without;
+  without.carry("never kept");
+  EXPECT_THROW(without.load(archive), odpd::IoError);
+}
+
+TYPED_TEST(ParticlesTest, EachHasOneOwner) {
+  constexpr int D = TypeParam::D;
+  std::atomic<int> found{0};
+  support::ThreadTeam::run(3, [&](const odpd::Communicator& ranks) {
+    Particles<D> particles;
+    fill(particles, 10);
+    particles.reorder({3, 1, 4, 0, 2, 9, 8, 7, 6, 5});
+    const std::int64_t free = particles.free_count();
+    particles.share_among(ranks);
+    EXPECT_EQ(particles.free_count(), free);
+    std::int64_t before = -1;
+    for (const std::int32_t i : particles.owned_by_identity()) {
+      EXPECT_TRUE(particles.owned().owns(std::int64_t{i}));
+      EXPECT_GT(particles.id[static_cast<std::size_t>(i)], before);
+      before = particles.id[static_cast<std::size_t>(i)];
+      ++found;
+    }
+  });
+  EXPECT_EQ(found, 10);
 }
 
 }  // namespace

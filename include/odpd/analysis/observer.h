@@ -73,7 +73,9 @@ class Observer {
   /// particles as the step leaves them.
   virtual double moment() const { return 0.0; }
 
-  /// One sample from the step just done (clock.step already advanced past it): hands its numbers to `add`.
+  /// One sample from the step just done (clock.step already advanced past it): hands its numbers to `add`. All ranks of the
+  /// particles call it together: it sums over its own particles (`owned`) and edges (`counts`), then over the ranks, so that
+  /// all of them hold the same averages.
   virtual void measure(const Clock& clock, const Particles<D>& particles,
                        const StepRecord<D>& record) = 0;
 

@@ -38,7 +38,8 @@ template <int D>
 double kinetic_temperature(const Scene<D>& scene, const Particles<D>& particles,
                            const std::vector<Vec<D>>& velocity);
 
-/// Conservative |F|^2 and Laplacian of U per particle at a stage, zero for particles of known velocity.
+/// Conservative |F|^2 and Laplacian of U per particle at a stage, zero for particles of known velocity; the energy of this rank's
+/// particles in the potentials of walls.
 template <int D>
 void configurational_terms(const Scene<D>& scene, const Particles<D>& particles,
                            const Stage<D>& stage, std::vector<double>& force_squared,

@@ -22,10 +22,11 @@ class Simulation {
  public:
   /// Builds everything the case names and rejects keys that nobody read; `own_observers`: kinds that [[observe]] may name besides
   /// those of odpd. With `restart`, whose file texts `config` has (`take_file_texts`), no file is read; `load` follows. Throws
-  /// ConfigError, IoError.
+  /// ConfigError, IoError. `ranks`, which must outlive it, share the particles; they make it and call its functions together.
   Simulation(const Config& config, CaseSettings settings,
              const std::vector<ObserverKind<D>>& own_observers = {},
-             CheckpointReader* restart = nullptr);
+             CheckpointReader* restart = nullptr,
+             const Communicator& ranks = Communicator::alone());
 
   const CaseSettings& settings() const { return settings_; }
   const Clock& clock() const { return clock_; }
@@ -40,7 +41,7 @@ class Simulation {
 
   /// One step and the measurements that are due after it.
   const StepRecord<D>& step();
-  /// Steps until the clock has run out, the target of [run] until is reached, or `stop()` says so; `after_step` writes
+  /// Steps until the clock has run out, the target of [run] until is reached, or `stop()` says so on some rank; `after_step` writes
   /// what is due. Throws BlowUpError as `judge` does.
   void run(const std::function<bool()>& stop, const std::function<void()>& after_step);
 

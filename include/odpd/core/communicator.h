@@ -11,6 +11,8 @@
 #include <limits>
 #include <span>
 
+#include "odpd/core/index.h"
+
 namespace odpd {
 
 class Communicator {
@@ -87,6 +89,9 @@ struct Share {
   /// Where the run ends in a list of n entries.
   std::int64_t end(std::int64_t n) const { return std::min(last, n); }
 
+  /// Entries of all ranks, where this one's list has n.
+  std::int64_t count(std::int64_t n) const { return ranks->sum(end(n) - first); }
+
   // Over x of `width` numbers per entry; the same bits on any thread count and all ranks.
   double dot(std::span<const double> a, std::span<const double> b, int width) const;
   double sum(std::span<const double> x, int width = 1) const;
@@ -96,8 +101,7 @@ struct Share {
   std::span<T> part(std::span<T> x, int width) const {
     const auto w = static_cast<std::int64_t>(width);
     const std::int64_t n = static_cast<std::int64_t>(x.size()) / w;
-    return x.subspan(static_cast<std::size_t>(std::min(first, n) * w),
-                     static_cast<std::size_t>((end(n) - std::min(first, n)) * w));
+    return x.subspan(index(std::min(first, n) * w), index((end(n) - std::min(first, n)) * w));
   }
 };
 

@@ -79,7 +79,8 @@ class Dynamics {
   /// Brings memory into spatial order when this step is due for it (a function of the step number alone).
   void reorder_if_due(std::int64_t step);
   /// Fills a stage at these positions at this time: what Motion::locate does, edges and forces. Throws BlowUpError for
-  /// a position that is not finite.
+  /// a position that is not finite. As all that moves, sums or solves, it is called by all ranks of the particles together, and
+  /// what one of them throws all throw.
   void evaluate(std::span<const Vec<D>> positions, double time, Stage<D>& stage);
   /// Draws F_B of the stage's edges and returns xi = P^T F_B, with the noise of the drag (zero, and nothing drawn, at
   /// kT = 0).

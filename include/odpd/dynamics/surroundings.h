@@ -28,10 +28,11 @@ class Surroundings {
                                     std::vector<Vec<D>>& force) const = 0;
   /// Energy of a free particle at r in these potentials.
   virtual double potential_energy_at(const Vec<D>& r) const = 0;
-  /// Energy of the potentials, and their Laplacian added per particle (for the configurational temperature).
+  /// Energy of this rank's particles in the potentials, and the Laplacian added for every particle (for the configurational
+  /// temperature).
   virtual double potential_energy(const Particles<D>& particles, std::span<const Vec<D>> positions,
                                   std::vector<double>& laplacian) const = 0;
-  /// Adds driving forces (body force) on the particles that move, at these positions at time t.
+  /// Adds driving forces (body force) on the particles that move, at these positions at time t. All ranks call it together.
   virtual void add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
                                   double t, std::vector<Vec<D>>& force) const = 0;
   /// Those forces depend on position, so they have no linear potential.

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "odpd/core/index.h"
+#include "odpd/core/communicator.h"
 #include "odpd/geometry/box.h"
 
 namespace odpd {
@@ -58,8 +58,8 @@ class PairList {
   double skin() const { return skin_; }
 
   /// Makes the list valid for these positions (inside the box along periodic directions); true when it was
-  /// rebuilt.
-  bool update(std::span<const Vec<D>> positions);
+  /// rebuilt. `share`: the particles of this rank. All ranks call it together, and rebuild their lists together.
+  bool update(std::span<const Vec<D>> positions, const Share& share = {});
   /// Forgets the list: particles were reordered, added or taken away.
   void invalidate() { reference_.clear(); }
   /// The same box with its sliding images elsewhere; the list is then searched anew.
@@ -80,7 +80,7 @@ class PairList {
   struct Row {
     std::int32_t chunk, begin, length;
   };
-  double largest_displacement(std::span<const Vec<D>> positions) const;
+  double largest_displacement(std::span<const Vec<D>> positions, const Share& share) const;
   void choose_skin(double displacement_per_update);
   void rebuild(std::span<const Vec<D>> positions);
   void sort_positions(std::span<const Vec<D>> positions);

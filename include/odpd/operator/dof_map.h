@@ -45,9 +45,15 @@ class DofMap {
   /// Node of V of body b; that of its w is b.
   std::size_t body_node(std::size_t b) const { return unknown_ + index(free_.nodes()) + b; }
 
+  /// The nodes of this rank: those of its free particles, of the first rank also the w of all bodies, of the last their V.
+  Share share() const;
+  /// Likewise the sites of its particles.
+  Share site_share() const { return run_of(site_map().node_particles()); }
+
   // `arms`: one per particle, zero but for constituents; empty where there are no bodies.
 
-  /// P^T f: from one force per particle to unknowns; forces and torques of bodies.
+  /// P^T f: from one force per particle to unknowns; forces and torques of bodies, whose constituents may belong to any rank.
+  /// With bodies all ranks call it together.
   void gather(std::span<const Vec<D>> arms, std::span<const Vec<D>> forces,
               std::vector<double>& q) const;
   /// P q + known, with `known` read at the particles without unknowns.
@@ -57,12 +63,15 @@ class DofMap {
   void divide_by_inertia(std::span<const Vec<D>> arms, std::vector<double>& l) const;
 
  private:
+  /// Where this rank's particles stand among these, which ascend.
+  Share run_of(std::span<const std::int32_t> particles) const;
   const NodeMap& site_map() const { return unknown_ == 0 ? free_ : sites_; }
 
   NodeMap free_;
   NodeMap sites_;  // empty without bodies of unknown motion: the same as free_
   std::vector<std::vector<std::int32_t>> body_;
   std::size_t unknown_ = 0;  // bodies
+  Share owned_;              // particles
 };
 
 }  // namespace odpd

@@ -39,6 +39,7 @@ class Resistance : public System {
   /// Takes over the edges of `network`; `shift` (mass/time) is added to the diagonal, e.g. 2 m/dt, and
   /// `stiffness_time` max(k_c, 0) to the friction along each edge of a pair, `bond_time` times that of a bond (times; 0:
   /// friction alone).
+  /// All ranks call it together and throw the same error.
   /// Throws SolverError for a rattler: a free particle whose friction block is singular at shift = 0, naming it by
   /// identity, its neighbours and the cures; and for a group of particles out of reach of all others. (Inner floppy modes
   /// of such a group, as in a chain with central friction, are left to the solver.)
@@ -60,6 +61,7 @@ class Resistance : public System {
   bool translations_are_null() const override { return translations_are_null_; }
   bool holds_centre_of_mass() const override { return hold_ && !translations_are_null_; }
   std::uint64_t generation() const override { return generation_; }
+  Share share() const override { return share_; }
 
   /// The rows: a node's links, in the order of the edges; both ends of an edge have one.
   std::span<const Link> links(std::size_t node) const {
@@ -99,6 +101,7 @@ class Resistance : public System {
   Box<D> box_;
   bool hold_;
   std::int64_t nodes_ = 0;
+  Share share_;
   std::vector<Vec<D>> g_;            // per edge of the network
   std::vector<Across> across_;       // per edge, or empty
   std::vector<std::int64_t> start_;  // rows of links_

@@ -43,6 +43,7 @@ class RigidResistance : public System {
   bool translations_are_null() const override { return sites_.translations_are_null(); }
   bool holds_centre_of_mass() const override { return sites_.holds_centre_of_mass(); }
   std::uint64_t generation() const override { return sites_.generation(); }
+  Share share() const override { return dofs_->share(); }
 
  private:
   /// Unit responses of one site to the nodes that move it: its velocity is the sum of column * unknown.

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "odpd/core/communicator.h"
 #include "odpd/operator/block_csr.h"
 #include "odpd/operator/translations.h"
 
@@ -44,10 +45,17 @@ class System {
   /// The centre of mass is to be held still although A is definite (the constrained problem).
   virtual bool holds_centre_of_mass() const = 0;
   bool projected() const { return translations_are_null() || holds_centre_of_mass(); }
+  /// The nodes of this rank, and the ranks of the others. All ranks call what sums over vectors together: `project`, `inner_product`
+  /// and `norm`, and whoever decides by entries of a vector asks all of them.
+  virtual Share share() const { return {}; }
   /// x := Pi x; nothing where the problem is regular.
   void project(std::span<double> x) const {
-    if (projected()) translations().remove_mean(x);
+    if (projected()) translations().remove_mean(x, share());
   }
+  double inner_product(std::span<const double> a, std::span<const double> b) const {
+    return share().dot(a, b, block_size());
+  }
+  double norm(std::span<const double> a) const { return share().norm(a, block_size()); }
 
   /// Changes whenever A changes.
   virtual std::uint64_t generation() const = 0;
@@ -73,12 +81,16 @@ class AssembledSystem : public System {
   bool translations_are_null() const override { return null_; }
   bool holds_centre_of_mass() const override { return held_; }
   std::uint64_t generation() const override { return 1; }
+  Share share() const override { return share_; }
+  /// From now on each of these ranks, which all have the whole matrix, owns a run of nodes.
+  void share_among(const Communicator& ranks) { share_ = Share::of(ranks, nodes()); }
 
  private:
   BlockCsr matrix_;
   Translations translations_;
   bool null_;
   bool held_;
+  Share share_;
 };
 
 }  // namespace odpd

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "odpd/core/communicator.h"
 #include "odpd/core/index.h"
 
 namespace odpd {
@@ -20,14 +21,23 @@ struct Translations {
 
   /// First of the translated unknowns of node n of these, in the part of `x` that belongs to them.
   std::size_t first(std::int64_t n) const { return index(n * block + block - components); }
+  // `share`: the nodes of this rank among all of the vector (System::share).
+
+  /// Nodes of all ranks that are translated, for a vector of this size.
+  std::int64_t count(std::size_t size, const Share& share) const;
   /// Node by node, in order.
-  std::vector<double> sums(std::span<const double> x) const;
+  std::vector<double> sums(std::span<const double> x, const Share& share = {}) const;
   /// a: `components` numbers.
   void add(std::span<const double> a, std::span<double> x) const;
   /// The same bits on any thread count.
-  void remove_mean(std::span<double> x) const;
+  void remove_mean(std::span<double> x, const Share& share = {}) const;
 
  private:
+  struct Range {
+    std::int64_t first, last;
+  };
+  /// Which of the nodes that are translated belong to the share.
+  Range own(std::size_t size, const Share& share) const;
   std::size_t in_front(std::size_t size) const { return size - index(nodes * block); }
 };
 

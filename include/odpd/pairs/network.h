@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "odpd/core/index.h"
+#include "odpd/core/communicator.h"
 #include "odpd/core/vec.h"
 #include "odpd/pairs/column.h"
 
@@ -64,6 +64,7 @@ struct PairNetwork {
   // Those of pairs that have it as i: first[p] .. first[p+1]-1. Empty when the edges are not ordered by i.
   std::vector<std::int64_t> first;
   std::int64_t bonds = 0;  ///< edges at the end that are bonds
+  Share owned;  ///< the particles of this rank; all, unless whoever had the edges written says so
 
   std::int64_t size() const { return static_cast<std::int64_t>(i.size()); }
   std::int64_t pairs() const { return size() - bonds; }
@@ -72,7 +73,9 @@ struct PairNetwork {
     const auto n = index(start[index(particle) + 1]) - b;
     return std::span<const std::int32_t>(edge).subspan(b, n);
   }
-  /// Energy of all edges and of all densities.
+  /// Sums over edges take those that count, and add up the ranks' sums: an edge counts where its particle i is at home.
+  bool counts(std::size_t k) const { return owned.owns(std::int64_t{i[k]}); }
+  /// Energy of all edges and of all densities, on all ranks.
   double energy() const;
   /// Conservative force on i of edge k.
   Vec<D> push(std::size_t k) const {

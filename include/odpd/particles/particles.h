@@ -2,11 +2,12 @@
 // The particles: positions r_i, stage-mean velocities v_i, and who they are. Structure of arrays.
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "odpd/core/archive.h"
-#include "odpd/core/index.h"
+#include "odpd/core/communicator.h"
 #include "odpd/core/vec.h"
 #include "odpd/particles/field_table.h"
 #include "odpd/particles/rigid_body.h"
@@ -45,9 +46,17 @@ class Particles {
     if (bodies.empty() || (group[i] >= 0 && group[i] <= walls)) return -1;
     return group[i] < 0 ? -group[i] - 1 : group[i] - 1 - walls;
   }
+  /// Of all ranks, which call it together.
   std::int64_t free_count() const;
-  /// Those that move: free ones and constituents of bodies of unknown motion.
+  /// Those of all ranks that move: free ones and constituents of bodies of unknown motion.
   std::int64_t moving_count() const;
+
+  /// From now on each of these ranks owns a run of memory. `ranks` must outlive this object.
+  void share_among(const Communicator& ranks) { ranks_ = &ranks; }
+  const Communicator& ranks() const { return *ranks_; }
+  /// The particles of this rank: whoever sums over particles takes these, and adds up the ranks' sums. So far every rank
+  /// holds the others' too.
+  Share owned() const { return Share::of(*ranks_, size()); }
   /// Where images differ in velocity (shear), a particle moves as the one in the box, a constituent as the image that hangs
   /// together with its body's centre in the box. Boxes are counted from the same origin as `image`.
   const Image& moving_image(std::size_t i) const {
@@ -57,9 +66,15 @@ class Particles {
 
   /// From now on `end_velocity` has an entry per particle, at first zero, and is state like the other fields.
   void carry_inertia();
+  /// A vector per particle that an integrator or an observer keeps from step to step under this name, zero at first, the
+  /// same whenever the name comes again: it is reordered, saved and loaded with the particles. It belongs to whoever asks,
+  /// so it is none of their own state and may be had from const particles. A restart finds the names given before `load`.
+  std::vector<Vec<D>>& carry(const std::string& name) const;
   /// Appends one particle with the next identity, at rest.
   void add(const Vec<D>& r, std::int32_t species_index, std::int32_t group_index);
   void reorder(const std::vector<std::int32_t>& order) { fields_.reorder(order); }
+  /// This rank's particles in the order of their identities, for sums that no reordering of memory may change.
+  std::vector<std::int32_t> owned_by_identity() const;
   /// Memory index of each identity: result[id] = i.
   std::vector<std::int32_t> index_of_id() const;
 
@@ -71,8 +86,10 @@ class Particles {
   void load(const StateReader& in);
 
  private:
-  FieldTable<D> fields_;
+  mutable FieldTable<D> fields_;                                // `carry` adds to it
+  mutable std::map<std::string, std::vector<Vec<D>>> carried_;  // by name
   bool inertial_ = false;
+  const Communicator* ranks_ = &Communicator::alone();
 };
 
 }  // namespace odpd

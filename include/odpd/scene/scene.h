@@ -15,7 +15,8 @@ class Scene : public Surroundings<D> {
  public:
   /// Builds the model, places walls and fluid, and relaxes overlaps. Throws ConfigError (box too small, more particles
   /// of a species than the fluid has, start positions outside the box, a model for another number of species).
-  explicit Scene(SceneSettings<D> settings);
+  /// `ranks`, which must outlive it: they share the particles, and make the scene together.
+  explicit Scene(SceneSettings<D> settings, const Communicator& ranks = Communicator::alone());
 
   const SceneSettings<D>& settings() const { return settings_; }
   const Box<D>& box() const { return settings_.box; }

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <span>
 
-#include "odpd/core/index.h"
+#include "odpd/core/communicator.h"
 #include "odpd/geometry/box.h"
 
 namespace odpd {
@@ -58,9 +58,11 @@ struct GridShape {
 };
 
 /// A grid over the box, in bounded directions over what the positions (D per node) take of it, with a spacing near
-/// `spacing` and numbers of cells that can be halved several times.
+/// `spacing` and numbers of cells that can be halved several times. `share`: which nodes are this rank's; all ranks call it
+/// together and get the same grid.
 template <int D>
-GridShape<D> choose_grid(const Box<D>& box, std::span<const double> positions, double spacing);
+GridShape<D> choose_grid(const Box<D>& box, std::span<const double> positions, double spacing,
+                         const Share& share = {});
 
 /// Calls f(point) for every point of the grid, x fastest.
 template <int D, class F>

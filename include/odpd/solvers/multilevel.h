@@ -63,6 +63,7 @@ class Multilevel {
   void build(const Resistance<D>& resistance);
   void place_nodes(const Resistance<D>& resistance, const SlicedRows<D>& rows);
 
+  const Communicator* ranks_ = &Communicator::alone();  // each of which has the whole grid
   Multigrid<D> grid_;
   double shift_ = 0.0, stiffness_time_ = 0.0;  // what the grid operator was built with
   double fresh_rate_ = 0.0, last_rate_ = 0.0;
