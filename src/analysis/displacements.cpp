@@ -22,31 +22,34 @@ Displacements::Displacements(std::string owner, double window, double fit_from, 
       curve_(window_.size()),
       diffusion_(kinds + 1) {}
 
-bool Displacements::add(std::vector<double> now, std::span<const std::int32_t> kind,
-                        std::size_t width, std::span<const int> components) {
+bool Displacements::add_sums(std::span<const double> sum, std::span<const double> population,
+                             std::size_t components) {
   newest_.clear();
-  bool complete = false;
-  if (!origin_.empty()) {
-    std::vector<double> sum(kinds_, 0.0), population(kinds_, 0.0);
-    for (std::size_t n = 0; n < kind.size(); ++n) {
-      if (kind[n] < 0) continue;
-      population[index(kind[n])] += 1.0;
-      for (const int c : components) {
-        const std::size_t at = n * width + index(c);
-        const double path = now[at] - origin_[at];
-        sum[index(kind[n])] += path * path;
-      }
-    }
+  if (begun_) {
     for (std::size_t a = 0; a < kinds_; ++a)
       window_[index(lag_) * kinds_ + a] =
           population[a] > 0.0 ? sum[a] / population[a] : std::nan("");
     if (++lag_ < lags_) return false;
-    finish_window(population, components.size());
-    complete = true;
+    finish_window(population, components);
   }
-  origin_ = std::move(now);
+  begun_ = true;
   lag_ = 0;
-  return complete;
+  return true;
+}
+
+void Displacements::add(std::vector<double> now, std::span<const std::int32_t> kind,
+                        std::size_t width, std::span<const int> components) {
+  std::vector<double> sum(kinds_, 0.0), population(kinds_, 0.0);
+  for (std::size_t n = 0; n < kind.size() && begun_; ++n) {
+    if (kind[n] < 0) continue;
+    population[index(kind[n])] += 1.0;
+    for (const int c : components) {
+      const std::size_t at = n * width + index(c);
+      const double path = now[at] - origin_[at];
+      sum[index(kind[n])] += path * path;
+    }
+  }
+  if (add_sums(sum, population, components.size())) origin_ = std::move(now);
 }
 
 void Displacements::finish_window(std::span<const double> population, std::size_t components) {
@@ -73,7 +76,8 @@ void Displacements::finish_window(std::span<const double> population, std::size_
 
 void Displacements::save(StateWriter& out, const std::string& prefix) const {
   out.write(prefix + "lag", std::vector<std::int64_t>{lag_});
-  out.write(prefix + "origin", origin_);
+  out.write(prefix + "begun", std::vector<std::int64_t>{begun_ ? 1 : 0});
+  if (!origin_.empty()) out.write(prefix + "origin", origin_);
   out.write(prefix + "window", window_);
   curve_.save(out, prefix + "curve");
   diffusion_.save(out, prefix + "diffusion");
@@ -82,16 +86,19 @@ void Displacements::save(StateWriter& out, const std::string& prefix) const {
 void Displacements::load(const StateReader& in, const std::string& prefix,
                          std::size_t coordinates) {
   const std::vector<std::int64_t> lag = in.read_integers(prefix + "lag");
-  origin_ = in.read_doubles(prefix + "origin");
+  const std::vector<std::int64_t> begun = in.read_integers(prefix + "begun");
+  origin_.clear();
+  if (in.has(prefix + "origin")) origin_ = in.read_doubles(prefix + "origin");
   window_ = in.read_doubles(prefix + "window");
-  if (lag.size() != 1 || lag[0] < 0 || lag[0] >= lags_ ||
-      !(origin_.size() == coordinates || origin_.empty()) ||
+  if (lag.size() != 1 || begun.size() != 1 || lag[0] < 0 || lag[0] >= lags_ ||
+      origin_.size() != (begun[0] != 0 ? coordinates : 0) ||
       window_.size() != index(lags_) * kinds_)
     throw IoError(
         fmt::format("the checkpoint's displacements '{}' do not fit the case's particles and "
                     "window: it is damaged or of another case",
                     owner_));
   lag_ = lag[0];
+  begun_ = begun[0] != 0;
   curve_.load(in, prefix + "curve");
   diffusion_.load(in, prefix + "diffusion");
 }

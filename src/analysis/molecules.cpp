@@ -43,6 +43,7 @@ MoleculeStatistics<D>::MoleculeStatistics(ObserverSettings settings, MsdSettings
       population_(scene.settings().molecules.size(), 0.0),
       displacements_(this->settings().name, msd_.window, msd_.fit_from,
                      dt * static_cast<double>(this->settings().every), population_.size()) {
+  if (in_time_) scene.particles().carry(column());
   for (const Molecule& m : scene.molecules()) population_[m.kind] += 1.0;
   for (const auto& m : scene.settings().molecules) tree_.push_back(bond_tree(m));
 }
@@ -67,6 +68,7 @@ template <int D>
 std::vector<double> MoleculeStatistics<D>::shapes(const Particles<D>& particles,
                                                   const Stage<D>& stage) const {
   const std::vector<std::int32_t> index_of = particles.index_of_id();
+  const Share own = particles.owned();
   std::vector<double> sums(shape_columns * population_.size(), 0.0);
   std::vector<Vec<D>> beads;
   for (const Molecule& m : scene_.molecules()) {
@@ -75,6 +77,7 @@ std::vector<double> MoleculeStatistics<D>::shapes(const Particles<D>& particles,
     const auto place = [&](std::size_t bead) {
       return stage.position[index(index_of[first + bead])];
     };
+    if (!own.owns(std::int64_t{index_of[first]})) continue;
     double* sum = &sums[shape_columns * m.kind];
     for (const auto& link : settings.bonds) {
       const double r = norm(stage.box.separation(place(index(link.i)), place(index(link.j))));
@@ -94,28 +97,43 @@ std::vector<double> MoleculeStatistics<D>::shapes(const Particles<D>& particles,
       sum[3] += bead / population_[m.kind] *
                 BalancedFrame<D>({.sites = settings.shape}, beads).distance_squared();
   }
+  own.ranks->sum(std::span(sums));
   return sums;
 }
 
 // What counts is how far a centre went: whether its beads lie in the same image does not matter.
 template <int D>
 void MoleculeStatistics<D>::follow(const Particles<D>& particles) {
+  std::vector<Vec<D>>& origin = particles.carry(column());
   const std::vector<std::int32_t> index_of = particles.index_of_id();
-  std::vector<double> centres;
-  std::vector<std::int32_t> kinds;
+  const auto unwrapped = [&](std::size_t i, std::size_t c) {
+    return particles.position[i].x[c] + particles.image[i][c] * scene_.box().size.x[c];
+  };
+  const Share own = particles.owned();
+  const std::size_t kinds = population_.size();
+  std::vector<double> sums(2 * kinds, 0.0);  // of the squares, and how many
   for (const Molecule& m : scene_.molecules()) {
+    const auto first = index(m.first);
+    if (!displacements_.begun() || !own.owns(std::int64_t{index_of[first]})) continue;
     const auto n = scene_.settings().molecules[m.kind].shape.size();
-    for (std::size_t c = 0; c < D; ++c) {
-      double sum = 0.0;
+    sums[kinds + m.kind] += 1.0;
+    for (const int direction : msd_.directions) {
+      const auto c = index(direction);
+      double now = 0.0, before = 0.0;
       for (std::size_t k = 0; k < n; ++k) {
-        const auto i = index(index_of[index(m.first) + k]);
-        sum += particles.position[i].x[c] + particles.image[i][c] * scene_.box().size.x[c];
+        const auto i = index(index_of[first + k]);
+        now += unwrapped(i, c);
+        before += origin[i].x[c];
       }
-      centres.push_back(sum / static_cast<double>(n));
+      const double path = now / static_cast<double>(n) - before / static_cast<double>(n);
+      sums[m.kind] += path * path;
     }
-    kinds.push_back(static_cast<std::int32_t>(m.kind));
   }
-  displacements_.add(std::move(centres), kinds, D, msd_.directions);
+  own.ranks->sum(std::span(sums));
+  const std::span<const double> all(sums);
+  if (!displacements_.add_sums(all.first(kinds), all.last(kinds), msd_.directions.size())) return;
+  for (std::size_t i = 0; i < origin.size(); ++i)
+    for (std::size_t c = 0; c < D; ++c) origin[i].x[c] = unwrapped(i, c);
 }
 
 template <int D>
@@ -175,7 +193,7 @@ void MoleculeStatistics<D>::save(StateWriter& out) const {
 template <int D>
 void MoleculeStatistics<D>::load(const StateReader& in) {
   Observer<D>::load(in);
-  displacements_.load(in, "centres_", scene_.molecules().size() * D);
+  displacements_.load(in, "centres_", 0);
 }
 
 template class MoleculeStatistics<2>;

@@ -61,7 +61,9 @@ Msd<D>::Msd(ObserverSettings settings, MsdSettings msd, const Scene<D>& scene, d
       scene_(scene),
       species_(scene.settings().species.size()),
       displacements_(this->settings().name, msd_.window, msd_.fit_from,
-                     dt * static_cast<double>(this->settings().every), species_) {}
+                     dt * static_cast<double>(this->settings().every), species_) {
+  scene.particles().carry(column());
+}
 
 template <int D>
 std::unique_ptr<Observer<D>> Msd<D>::make(const ObserverEntry<D>& entry) {
@@ -71,16 +73,27 @@ std::unique_ptr<Observer<D>> Msd<D>::make(const ObserverEntry<D>& entry) {
 
 template <int D>
 void Msd<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>&) {
-  // Unwrapped positions by identity, so that reordering of memory does not matter.
-  std::vector<double> now(particles.position.size() * D);
-  std::vector<std::int32_t> kind(particles.position.size(), -1);
-  for (std::size_t i = 0; i < particles.position.size(); ++i) {
-    const auto id = index(particles.id[i]);
-    if (particles.is_free(i)) kind[id] = particles.species[i];
-    for (std::size_t c = 0; c < D; ++c)
-      now[id * D + c] = particles.position[i].x[c] + particles.image[i][c] * scene_.box().size.x[c];
+  std::vector<Vec<D>>& origin = particles.carry(column());
+  const auto unwrapped = [&](std::size_t i, std::size_t c) {
+    return particles.position[i].x[c] + particles.image[i][c] * scene_.box().size.x[c];
+  };
+  std::vector<double> sums(2 * species_, 0.0);  // of the squares, and how many
+  for (const std::int32_t particle : particles.owned_by_identity()) {
+    const auto i = index(particle);
+    if (!particles.is_free(i) || !displacements_.begun()) continue;
+    const auto kind = index(particles.species[i]);
+    sums[species_ + kind] += 1.0;
+    for (const int c : msd_.directions) {
+      const double path = unwrapped(i, index(c)) - origin[i][c];
+      sums[kind] += path * path;
+    }
   }
-  displacements_.add(std::move(now), kind, D, msd_.directions);
+  particles.ranks().sum(std::span(sums));
+  const std::span<const double> all(sums);
+  if (!displacements_.add_sums(all.first(species_), all.last(species_), msd_.directions.size()))
+    return;
+  for (std::size_t i = 0; i < origin.size(); ++i)
+    for (std::size_t c = 0; c < D; ++c) origin[i].x[c] = unwrapped(i, c);
 }
 
 template <int D>
@@ -147,8 +160,7 @@ void Msd<D>::save(StateWriter& out) const {
 
 template <int D>
 void Msd<D>::load(const StateReader& in) {
-  // The particles of the checkpoint are in the scene already.
-  displacements_.load(in, "", scene_.particles().position.size() * D);
+  displacements_.load(in, "", 0);
 }
 
 template MsdSettings read_msd<2>(const ObserverEntry<2>&);

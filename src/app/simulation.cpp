@@ -59,7 +59,7 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings,
       !why.empty() && scene_.box().shear)
     config.table("integrator").fail("name", why);
   config.reject_unread();
-  integrator_->check(dynamics_);
+  integrator_->prepare(dynamics_);
   check_observables(config);
 }
 

@@ -17,8 +17,8 @@ const StepRecord<D>& Extrapolated<D>::step(Dynamics<D>& dynamics, const Clock& c
   for (std::size_t k = 0; k < q.size(); ++k) load[k] += momentum[k] + force[k];
 
   if (!last_velocity_.empty()) {
-    const std::vector<double> last = from_identity(dynamics, last_velocity_);
-    const std::vector<double> last_force = from_identity(dynamics, last_force_);
+    const std::vector<double> last = last_velocity_.unknowns(dynamics);
+    const std::vector<double> last_force = last_force_.unknowns(dynamics);
     const std::vector<double> drag = dynamics.friction(record.start, last);
     for (std::size_t k = 0; k < q.size(); ++k)
       load[k] += 0.5 * (force[k] - drag[k] - last_force[k]);
@@ -34,22 +34,25 @@ const StepRecord<D>& Extrapolated<D>::step(Dynamics<D>& dynamics, const Clock& c
                dynamics.has_mass() ? motion.times_inertia(record.start, q, 1.0) : q);
   std::vector<double> rest = force;
   for (std::size_t k = 0; k < q.size(); ++k) rest[k] -= drag[k];
-  last_force_ = by_identity(dynamics, rest);
+  last_force_.keep(dynamics, rest);
   motion.cross_faces(q);
-  last_velocity_ = by_identity(dynamics, q);
+  last_velocity_.keep(dynamics, q);
   return record;
 }
 
 template <int D>
+void Extrapolated<D>::prepare(Dynamics<D>& dynamics) {
+  for (auto* kept : {&last_velocity_, &last_force_}) kept->prepare(dynamics);
+}
+
+template <int D>
 void Extrapolated<D>::save(StateWriter& out) const {
-  out.write("last_velocity", last_velocity_);
-  out.write("last_force", last_force_);
+  for (const auto* kept : {&last_velocity_, &last_force_}) kept->save(out);
 }
 
 template <int D>
 void Extrapolated<D>::load(const StateReader& in) {
-  last_velocity_ = in.read_doubles("last_velocity");
-  last_force_ = in.read_doubles("last_force");
+  for (auto* kept : {&last_velocity_, &last_force_}) kept->load(in);
 }
 
 template class Extrapolated<2>;

@@ -1,5 +1,7 @@
 #include "odpd/dynamics/integrator.h"
 
+#include <algorithm>
+
 #include "odpd/core/error.h"
 #include "odpd/core/index.h"
 
@@ -28,58 +30,52 @@ void Integrator<D>::finish(Dynamics<D>& dynamics, const Clock& clock, const Unkn
   motion.set_end_momentum(p);
 }
 
-namespace {
-
-// For each node where its values stand by identity: the particles', then w and V of the bodies.
 template <int D>
-std::vector<std::size_t> places(Dynamics<D>& dynamics) {
+void CarriedUnknowns<D>::keep(Dynamics<D>& dynamics, const std::vector<double>& q) {
   const DofMap<D>& dofs = dynamics.dofs();
-  std::vector<std::size_t> place(index(dofs.nodes()));
+  std::vector<Vec<D>>& column = dynamics.particles().carry(name_);
   const auto free = dofs.free_particles();
   for (std::size_t k = 0; k < free.size(); ++k)
-    place[dofs.free_node(k)] = index(dynamics.particles().id[index(free[k])]);
-  auto next = index(dofs.particles());
-  for (std::size_t b = 0; b < index(dofs.bodies()); ++b) {
-    place[b] = next++;
-    place[dofs.body_node(b)] = next++;
-  }
-  return place;
-}
-
-}  // namespace
-
-template <int D>
-std::vector<double> by_identity(Dynamics<D>& dynamics, const std::vector<double>& q) {
-  const std::vector<std::size_t> place = places(dynamics);
-  const auto entries = dynamics.dofs().particles() + 2 * dynamics.dofs().bodies();
-  const auto block = index(dynamics.dofs().block_size());
-  std::vector<double> values(index(entries) * block, 0.0);
-  for (std::size_t n = 0; n < place.size(); ++n)
-    for (std::size_t c = 0; c < block; ++c) values[place[n] * block + c] = q[n * block + c];
-  return values;
+    for (std::size_t c = 0; c < D; ++c) column[index(free[k])].x[c] = q[dofs.free_node(k) * D + c];
+  const auto of_bodies = static_cast<std::ptrdiff_t>(dofs.bodies() * D);
+  bodies_.assign(q.begin(), q.begin() + of_bodies);
+  bodies_.insert(bodies_.end(), q.end() - of_bodies, q.end());
+  empty_ = false;
 }
 
 template <int D>
-std::vector<double> from_identity(Dynamics<D>& dynamics, const std::vector<double>& values) {
-  const auto entries = dynamics.dofs().particles() + 2 * dynamics.dofs().bodies();
-  const auto block = index(dynamics.dofs().block_size());
-  if (values.size() != index(entries) * block)
+std::vector<double> CarriedUnknowns<D>::unknowns(Dynamics<D>& dynamics) const {
+  const DofMap<D>& dofs = dynamics.dofs();
+  if (std::ssize(bodies_) != 2 * dofs.bodies() * D)
     throw IoError(
-        "the checkpoint's integrator arrays do not fit the particles: it is damaged or of another "
+        "the checkpoint's integrator arrays do not fit the bodies: it is damaged or of another "
         "case");
-  const std::vector<std::size_t> place = places(dynamics);
-  std::vector<double> q(place.size() * block);
-  for (std::size_t n = 0; n < place.size(); ++n)
-    for (std::size_t c = 0; c < block; ++c) q[n * block + c] = values[place[n] * block + c];
+  const std::vector<Vec<D>>& column = dynamics.particles().carry(name_);
+  std::vector<double> q(index(dofs.unknowns()));
+  const auto free = dofs.free_particles();
+  for (std::size_t k = 0; k < free.size(); ++k)
+    for (std::size_t c = 0; c < D; ++c) q[dofs.free_node(k) * D + c] = column[index(free[k])].x[c];
+  const auto middle = bodies_.begin() + dofs.bodies() * D;
+  std::copy(bodies_.begin(), middle, q.begin());
+  std::copy(middle, bodies_.end(), q.end() - dofs.bodies() * D);
   return q;
 }
 
-#define ODPD_INSTANTIATE(D)                                                              \
-  template class Integrator<D>;                                                          \
-  template std::vector<double> by_identity<D>(Dynamics<D>&, const std::vector<double>&); \
-  template std::vector<double> from_identity<D>(Dynamics<D>&, const std::vector<double>&);
-ODPD_INSTANTIATE(2)
-ODPD_INSTANTIATE(3)
-#undef ODPD_INSTANTIATE
+template <int D>
+void CarriedUnknowns<D>::save(StateWriter& out) const {
+  out.write(name_ + "_kept", std::vector<std::int64_t>{empty_ ? 0 : 1});
+  out.write(name_ + "_bodies", bodies_);
+}
+
+template <int D>
+void CarriedUnknowns<D>::load(const StateReader& in) {
+  empty_ = in.read_integers(name_ + "_kept").at(0) == 0;
+  bodies_ = in.read_doubles(name_ + "_bodies");
+}
+
+template class Integrator<2>;
+template class Integrator<3>;
+template class CarriedUnknowns<2>;
+template class CarriedUnknowns<3>;
 
 }  // namespace odpd

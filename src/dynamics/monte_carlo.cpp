@@ -53,7 +53,7 @@ void MonteCarlo<D>::refuse_driving(Dynamics<D>& dynamics, double time) {
 }
 
 template <int D>
-void MonteCarlo<D>::check(Dynamics<D>& dynamics) {
+void MonteCarlo<D>::prepare(Dynamics<D>& dynamics) {
   const double kT = dynamics.constants().kT;
   if (!(kT > 0.0))
     throw ConfigError(
@@ -174,7 +174,7 @@ void MonteCarlo<D>::tune(const Box<D>& box) {
 
 template <int D>
 const StepRecord<D>& MonteCarlo<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
-  if (!energy_) check(dynamics);
+  if (!energy_) prepare(dynamics);
   record_.step = clock.step;
   record_.dt = clock.dt;
   dynamics.reorder_if_due(clock.step);

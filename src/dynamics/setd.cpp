@@ -73,8 +73,8 @@ const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   record.start.velocity = motion.velocities(record.start, v);
   const std::vector<double> force = dynamics.total_force(record.start, v);
   const bool lagged = !last_velocity_.empty();
-  const std::vector<double> last_v = lagged ? from_identity(dynamics, last_velocity_) : v;
-  const std::vector<double> last_force = lagged ? from_identity(dynamics, last_force_) : force;
+  const std::vector<double> last_v = lagged ? last_velocity_.unknowns(dynamics) : v;
+  const std::vector<double> last_force = lagged ? last_force_.unknowns(dynamics) : force;
   const std::vector<double> v_before = v;
 
   PhaseTimer timer(dynamics.phases(), Phase::solve);
@@ -100,23 +100,27 @@ const StepRecord<D>& Setd<D>::step(Dynamics<D>& dynamics, const Clock& clock) {
   if (order_ > 1) {
     std::vector<double> last = v_before;
     motion.cross_faces(last);
-    last_velocity_ = by_identity(dynamics, last);
-    last_force_ = by_identity(dynamics, force);
+    last_velocity_.keep(dynamics, last);
+    last_force_.keep(dynamics, force);
   }
   motion.set_end_momentum(v);
   return record;
 }
 
 template <int D>
+void Setd<D>::prepare(Dynamics<D>& dynamics) {
+  if (order_ < 2) return;
+  for (auto* kept : {&last_velocity_, &last_force_}) kept->prepare(dynamics);
+}
+
+template <int D>
 void Setd<D>::save(StateWriter& out) const {
-  out.write("last_velocity", last_velocity_);
-  out.write("last_force", last_force_);
+  for (const auto* kept : {&last_velocity_, &last_force_}) kept->save(out);
 }
 
 template <int D>
 void Setd<D>::load(const StateReader& in) {
-  last_velocity_ = in.read_doubles("last_velocity");
-  last_force_ = in.read_doubles("last_force");
+  for (auto* kept : {&last_velocity_, &last_force_}) kept->load(in);
 }
 
 template class Setd<2>;

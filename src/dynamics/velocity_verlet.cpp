@@ -18,7 +18,7 @@ const StepRecord<D>& VelocityVerlet<D>::step(Dynamics<D>& dynamics, const Clock&
 
   std::vector<double> v = predicted;
   if (!half_way_.empty()) {
-    v = from_identity(dynamics, half_way_);
+    v = half_way_.unknowns(dynamics);
     for (std::size_t k = 0; k < v.size(); ++k) v[k] += half_kick * force[k];
   }
   record.v_start = motion.velocities(record.start, v);
@@ -30,7 +30,7 @@ const StepRecord<D>& VelocityVerlet<D>::step(Dynamics<D>& dynamics, const Clock&
   record.v_mid = motion.velocities(record.start, half_way);
   record.alarm_crossings += motion.move(record.v_mid, clock.dt, clock.time());
   motion.cross_faces(half_way);
-  half_way_ = by_identity(dynamics, half_way);
+  half_way_.keep(dynamics, half_way);
   motion.set_end_momentum(predicted);
   return record;
 }

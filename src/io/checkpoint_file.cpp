@@ -10,7 +10,7 @@ namespace {
 
 // The number goes up when a checkpoint can no longer be read by older programs.
 constexpr const char* format_path = "/odpd_checkpoint_format";
-constexpr std::int64_t format_number = 3;
+constexpr std::int64_t format_number = 4;
 
 std::string group_of(const std::string& component) { return "/components/" + component; }
 

@@ -69,9 +69,9 @@ std::vector<std::string> names(const Results& results) {
   return list;
 }
 
-class Registry : public ::testing::Test {
- protected:
-  Registry()
+/// A run of it.
+struct WholeRun {
+  WholeRun()
       : scene(everything()),
         dynamics(scene.box(), scene.particles(), scene.model(), scene,
                  odpd::make_solver({.name = "pcg", .tolerance = 1e-5}), {.seed = 3}),
@@ -85,11 +85,11 @@ class Registry : public ::testing::Test {
     config.reject_unread();
     return std::move(observers.front());
   }
-  void run(std::int64_t steps, const std::vector<Observer<2>*>& observers) {
+  void run(std::int64_t steps, const std::vector<Observer<2>*>& looking) {
     for (std::int64_t k = 0; k < steps; ++k) {
       const auto& record = integrator->step(dynamics, clock);
       clock.advance();
-      for (Observer<2>* observer : observers)
+      for (Observer<2>* observer : looking)
         if (observer->is_due(clock)) observer->measure(clock, scene.particles(), record);
     }
   }
@@ -100,14 +100,17 @@ class Registry : public ::testing::Test {
   odpd::Clock clock{.dt = 0.02, .total_steps = 400};
 };
 
+class Registry : public ::testing::Test, protected WholeRun {};
+
 // Long enough for all of them: the longest windows are 3 time units. The second set begins in the middle, from the state of the first.
 TEST_F(Registry, EveryKindNamesWhatItGivesAndContinues) {
+  WholeRun restarted;
   Observers through, continued;
   std::vector<std::vector<std::string>> promised;
   for (const ObserverKind<2>& kind : odpd::observer_kinds<2>()) {
     SCOPED_TRACE(kind.name);
     through.push_back(make("kind = \"" + kind.name + "\"\n"));
-    continued.push_back(make("kind = \"" + kind.name + "\"\n"));
+    continued.push_back(restarted.make("kind = \"" + kind.name + "\"\n"));
     const Results before = records::results(*through.back());
     promised.push_back(names(before));
     EXPECT_EQ(through.back()->settings().kind, kind.name);
@@ -122,14 +125,18 @@ TEST_F(Registry, EveryKindNamesWhatItGivesAndContinues) {
     return list;
   };
   run(101, all(through));
+  support::MemoryArchive particles;
+  scene.particles().save(particles);
+  restarted.scene.particles().load(particles);
+  restarted.dynamics.particles_replaced();
+  restarted.clock = clock;
   for (std::size_t k = 0; k < through.size(); ++k) {
     support::MemoryArchive archive;
     through[k]->save(archive);
     continued[k]->load(archive);
   }
-  std::vector<Observer<2>*> both = all(through);
-  for (Observer<2>* observer : all(continued)) both.push_back(observer);
-  run(200, both);
+  run(200, all(through));
+  restarted.run(200, all(continued));
   for (std::size_t k = 0; k < through.size(); ++k) {
     SCOPED_TRACE(through[k]->settings().kind);
     const Results one = records::results(*through[k]), other = records::results(*continued[k]);

@@ -272,18 +272,26 @@ TEST(Msd, SaveAndLoadMidStream) {
     return 0.3 * support::random_vectors<2>(10, t)[id];
   };
   Walkers<2> walkers(10);
-  const auto make = [&] {
-    return Msd<2>({.kind = "msd", .name = "msd"}, all_directions<2>(), walkers.scene, 0.1);
+  Walkers<2> others(10);
+  const auto make = [&](const Walkers<2>& w) {
+    return Msd<2>({.kind = "msd", .name = "msd"}, all_directions<2>(), w.scene, 0.1);
   };
-  Msd<2> through = make(), copy = make();
+  Msd<2> through = make(walkers), copy = make(others);
   walkers.run(through, 57, step);
-  support::MemoryArchive archive;
+  support::MemoryArchive archive, particles;
   through.save(archive);
+  walkers.scene.particles().save(particles);
+  others.scene.particles().load(particles);
   copy.load(archive);
   for (int t = 0; t < 120; ++t) {
-    walkers.scene.particles().position[static_cast<std::size_t>(t) % 10][0] += 0.01;
+    for (Walkers<2>* w : {&walkers, &others}) {
+      auto& p = w->scene.particles();
+      const auto moved = p.index_of_id()[static_cast<std::size_t>(t) % 10];
+      p.position[static_cast<std::size_t>(moved)][0] += 0.01;
+    }
+    if (t % 7 == 3) others.scene.particles().reorder(support::random_order(10, 5));
     through.measure(Clock{}, walkers.scene.particles(), walkers.record);
-    copy.measure(Clock{}, walkers.scene.particles(), walkers.record);
+    copy.measure(Clock{}, others.scene.particles(), others.record);
   }
   const auto a = records::results(through), b = records::results(copy);
   EXPECT_EQ(records::mean(a, "diffusion"), records::mean(b, "diffusion"));
@@ -313,9 +321,10 @@ TEST(Msd, ADamagedCheckpointIsRefused) {
   };
   EXPECT_NO_THROW(make().load(archive));
   refused([](auto& a) { a.integers["lag"].clear(); });
+  refused([](auto& a) { a.integers["begun"].clear(); });
   refused([](auto& a) { a.integers["lag"][0] = 10; });
   refused([](auto& a) { a.integers["lag"][0] = -1; });
-  refused([](auto& a) { a.doubles["origin"].resize(18); });
+  refused([](auto& a) { a.doubles["origin"].resize(20); });
   refused([](auto& a) { a.doubles["window"].push_back(0.0); });
 }
 

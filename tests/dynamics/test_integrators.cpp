@@ -158,9 +158,10 @@ TEST_P(Integrators, RestartIsBitwise) {
   unbroken.run(*first, Clock{.dt = 0.005, .step = 7, .total_steps = 13});
 
   Toy resumed(s);
+  const auto second = make();
+  second->prepare(*resumed.dynamics);
   resumed.particles.load(particles);
   resumed.dynamics->particles_replaced();
-  const auto second = make();
   second->load(integrator);
   resumed.run(*second, Clock{.dt = 0.005, .step = 7, .total_steps = 13});
   EXPECT_EQ(unbroken.particles.id, resumed.particles.id);

@@ -218,7 +218,7 @@ TYPED_TEST(MonteCarloTest, ARestartContinuesBitForBit) {
   after.particles.load(particles);
   after.dynamics->particles_replaced();
   MonteCarlo<D> second;
-  second.check(*after.dynamics);
+  second.prepare(*after.dynamics);
   second.load(state);
   after.run(second, 49, 120, 80);
   EXPECT_EQ(after.particles.position, whole.particles.position);
@@ -276,7 +276,7 @@ TEST(MonteCarlo, RefusesWhatHasNoEquilibrium) {
     toy.trap = Trap<2>({.kT = kT});
     change(toy.trap);
     toy.remake({});
-    MonteCarlo<2>().check(*toy.dynamics);
+    MonteCarlo<2>().prepare(*toy.dynamics);
   };
   const auto nothing = [](Trap<2>&) {};
   const auto lift = [](Trap<2>& trap) { trap.force = {{0.0, 1.0}}; };

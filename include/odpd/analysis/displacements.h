@@ -4,8 +4,9 @@
 //   D = (1/(2 d)) d/dt <|r(t) - r(0)|^2>          (Phan-Thien et al. 2016, eq. 52)
 //
 // as the least-squares slope between the lags `fit_from` and `window`; d is the number of components that count. One window
-// begins where the last one ended, so that each gives an independent sample. Of a kind that nothing belongs to both are undefined
-// (NaN).
+// begins where the last one ended, so that each gives an independent sample. Where the coordinates stood when the window
+// began is kept here for few of them, or carried by the particles (Particles::carry). Of a kind that nothing belongs to both
+// are undefined (NaN).
 #include <span>
 #include <string>
 #include <vector>
@@ -20,9 +21,16 @@ class Displacements {
   Displacements(std::string owner, double window, double fit_from, double lag_time,
                 std::size_t kinds);
 
-  /// One sample: `width` coordinates per entity, unwrapped, entities in the same order every time; kind[n] < 0: not counted.
-  /// `components` of the coordinates count. True when it completed a window.
-  bool add(std::vector<double> now, std::span<const std::int32_t> kind, std::size_t width,
+  /// A window has begun: there are places to measure from.
+  bool begun() const { return begun_; }
+  /// One sample: of each kind the sum of the squares of its displacements since the window began, and how many of the kind
+  /// there are; `components` of the coordinates count. True when a window begins here: the next displacements are from
+  /// where the coordinates stand now. The first sample of all begins one, and its sums do not count.
+  bool add_sums(std::span<const double> sum, std::span<const double> population,
+                std::size_t components);
+  /// The same from the coordinates: `width` coordinates per entity, unwrapped, entities in the same order every time; kind[n] < 0: not counted.
+  /// `components` of the coordinates count.
+  void add(std::vector<double> now, std::span<const std::int32_t> kind, std::size_t width,
            std::span<const int> components);
 
   std::int64_t windows() const { return diffusion_.samples(); }
@@ -36,7 +44,7 @@ class Displacements {
   const std::vector<double>& newest() const { return newest_; }
 
   void save(StateWriter& out, const std::string& prefix) const;
-  /// Throws IoError for a state of other sizes; `coordinates`: how many there are.
+  /// Throws IoError for a state of other sizes; `coordinates`: how many there are, those that particles carry left out.
   void load(const StateReader& in, const std::string& prefix, std::size_t coordinates);
 
  private:
@@ -46,8 +54,9 @@ class Displacements {
   double fit_from_, lag_time_;
   std::int64_t lags_;
   std::size_t kinds_;
-  std::int64_t lag_ = 0;        // samples since the window began
-  std::vector<double> origin_;  // coordinates there; empty before the first
+  std::int64_t lag_ = 0;  // samples since the window began
+  bool begun_ = false;
+  std::vector<double> origin_;  // coordinates there, of `add`; empty before the first
   std::vector<double> window_;  // [lag * kinds + kind], filled as lags come
   BlockAverage curve_, diffusion_;
   std::vector<double> newest_;

@@ -28,6 +28,8 @@ class MoleculeStatistics : public Observer<D> {
   void load(const StateReader& in) override;
 
  private:
+  /// Where the particles stood when the window began, unwrapped.
+  std::string column() const { return "observer_" + this->named("origin"); }
   std::vector<double> shapes(const Particles<D>& particles, const Stage<D>& stage) const;
   void follow(const Particles<D>& particles);
 

@@ -34,6 +34,9 @@ class Msd : public Observer<D> {
   void load(const StateReader& in) override;
 
  private:
+  /// Where the particles stood when the window began, unwrapped.
+  std::string column() const { return "observer_" + this->named("origin"); }
+
   MsdSettings msd_;
   const Scene<D>& scene_;
   std::size_t species_;

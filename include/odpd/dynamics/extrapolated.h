@@ -21,6 +21,7 @@ class Extrapolated : public Integrator<D> {
   std::string name() const override { return "extrapolated"; }
   int solves() const override { return 1; }
   const StepRecord<D>& step(Dynamics<D>& dynamics, const Clock& clock) override;
+  void prepare(Dynamics<D>& dynamics) override;
   void save(StateWriter& out) const override;
   void load(const StateReader& in) override;
 
@@ -30,9 +31,9 @@ class Extrapolated : public Integrator<D> {
 
  private:
   double theta_ = 0.0;
-  // By identity; empty before the first step.
-  std::vector<double> last_velocity_;
-  std::vector<double> last_force_;  // F_{k-1} - R_{k-1} v_{k-1}
+  // Empty before the first step.
+  CarriedUnknowns<D> last_velocity_{"last_velocity"};
+  CarriedUnknowns<D> last_force_{"last_force"};  // F_{k-1} - R_{k-1} v_{k-1}
 };
 
 }  // namespace odpd

@@ -13,6 +13,7 @@
 //   monte-carlo      no motion: samples the equilibrium of the scene's energy, the exact reference for the others
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "odpd/core/archive.h"
@@ -30,8 +31,9 @@ class Integrator {
   virtual std::string name() const = 0;
   /// Solves per step.
   virtual int solves() const = 0;
-  /// Throws ConfigError when the scheme has no answer for this scene. To be called before the first step.
-  virtual void check(Dynamics<D>&) {}
+  /// Throws ConfigError when the scheme has no answer for this scene, and has the particles carry what it keeps of them. To be
+  /// called before the first step and before the particles of a checkpoint are loaded.
+  virtual void prepare(Dynamics<D>&) {}
   /// What a user must know before believing its results; empty when there is nothing.
   virtual std::string warning() const { return {}; }
   /// What it did, for the report of a scheme that solves nothing.
@@ -39,7 +41,7 @@ class Integrator {
   /// One step of clock.dt from clock.step. The record stays valid until the next step. A step that throws has moved
   /// nothing and carries what it carried before.
   virtual const StepRecord<D>& step(Dynamics<D>& dynamics, const Clock& clock) = 0;
-  /// Arrays carried from step to step (none for schemes that only know r and v).
+  /// What it carries from step to step besides the columns of the particles (nothing for schemes that only know r and v).
   virtual void save(StateWriter&) const {}
   virtual void load(const StateReader&) {}
 
@@ -60,12 +62,28 @@ class Integrator {
   StepRecord<D> record_;
 };
 
-/// Unknowns in the order of the persistent identities, a block per particle (zero where it has none of its own), then
-/// those of the bodies, and back: carried arrays so survive a reordering of memory.
+/// A vector of unknowns that a scheme keeps from step to step: what belongs to free particles in a column that they carry
+/// (Particles::carry), so that it follows them in memory and into checkpoints; w and V of bodies here.
 template <int D>
-std::vector<double> by_identity(Dynamics<D>& dynamics, const std::vector<double>& q);
-template <int D>
-std::vector<double> from_identity(Dynamics<D>& dynamics, const std::vector<double>& values);
+class CarriedUnknowns {
+ public:
+  /// name: of the column, unique in a run.
+  explicit CarriedUnknowns(std::string name) : name_(std::move(name)) {}
+  /// Nothing was kept yet.
+  bool empty() const { return empty_; }
+  void prepare(Dynamics<D>& dynamics) { dynamics.particles().carry(name_); }
+  void keep(Dynamics<D>& dynamics, const std::vector<double>& q);
+  /// In the present order of the unknowns. Throws IoError where a checkpoint held those of other bodies.
+  std::vector<double> unknowns(Dynamics<D>& dynamics) const;
+  /// All but the column.
+  void save(StateWriter& out) const;
+  void load(const StateReader& in);
+
+ private:
+  std::string name_;
+  bool empty_ = true;
+  std::vector<double> bodies_;  // w of each, then V of each, D numbers
+};
 
 enum class Masses { any, zero, positive };
 

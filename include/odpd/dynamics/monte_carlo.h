@@ -31,7 +31,7 @@ class MonteCarlo : public Integrator<D> {
 
   std::string name() const override { return "monte-carlo"; }
   int solves() const override { return 0; }
-  void check(Dynamics<D>& dynamics) override;
+  void prepare(Dynamics<D>& dynamics) override;
   std::string summary() const override;
   /// One sweep. The record holds its start, with zero velocities. One object serves one Dynamics.
   const StepRecord<D>& step(Dynamics<D>& dynamics, const Clock& clock) override;

@@ -30,14 +30,15 @@ class Setd : public Integrator<D> {
            "conserved pair by pair: use it to reproduce its sources";
   }
   const StepRecord<D>& step(Dynamics<D>& dynamics, const Clock& clock) override;
+  void prepare(Dynamics<D>& dynamics) override;
   void save(StateWriter& out) const override;
   void load(const StateReader& in) override;
 
  private:
   int order_;
-  // By identity, order 2 only; empty before the first step.
-  std::vector<double> last_velocity_;
-  std::vector<double> last_force_;  // F - (R + zeta_0) v
+  // Order 2 only; empty before the first step.
+  CarriedUnknowns<D> last_velocity_{"last_velocity"};
+  CarriedUnknowns<D> last_force_{"last_force"};  // F - (R + zeta_0) v
 };
 
 }  // namespace odpd

@@ -21,12 +21,13 @@ class VelocityVerlet : public Integrator<D> {
   std::string name() const override { return "velocity-verlet"; }
   int solves() const override { return 0; }
   const StepRecord<D>& step(Dynamics<D>& dynamics, const Clock& clock) override;
-  void save(StateWriter& out) const override { out.write("half_way", half_way_); }
-  void load(const StateReader& in) override { half_way_ = in.read_doubles("half_way"); }
+  void prepare(Dynamics<D>& dynamics) override { half_way_.prepare(dynamics); }
+  void save(StateWriter& out) const override { half_way_.save(out); }
+  void load(const StateReader& in) override { half_way_.load(in); }
 
  private:
   double lambda_;
-  std::vector<double> half_way_;  // v_k + dt/2 f_k by identity; empty before the first step
+  CarriedUnknowns<D> half_way_{"half_way"};  // v_k + dt/2 f_k; empty before the first step
 };
 
 }  // namespace odpd
