@@ -117,8 +117,9 @@ odpd::SceneSettings<D> settings(Model model, Geometry geometry, double length) {
 template <int D>
 class Instant {
  public:
-  Instant(Model model, Geometry geometry, double length, bool hold = false)
-      : scene(settings<D>(model, geometry, length)),
+  Instant(Model model, Geometry geometry, double length, bool hold = false,
+          const odpd::Communicator& ranks = odpd::Communicator::alone())
+      : scene(settings<D>(model, geometry, length), ranks),
         dynamics(scene.box(), scene.particles(), scene.model(), scene, odpd::make_solver({}),
                  {.hold_centre_of_mass = hold}) {
     // One thread, or the threads of several test programs at once wait for each other.

@@ -78,6 +78,9 @@ class EdgeSystem : public odpd::System {
   bool translations_are_null() const override { return !anchored_; }
   bool holds_centre_of_mass() const override { return asked_.hold && anchored_; }
   std::uint64_t generation() const override { return 1; }
+  odpd::Share share() const override { return share_; }
+  /// As AssembledSystem::share_among.
+  void share_among(const odpd::Communicator& ranks) { share_ = odpd::Share::of(ranks, nodes()); }
 
  private:
   void add(std::int32_t row, std::int32_t column, const Matrix& block) {
@@ -103,6 +106,7 @@ class EdgeSystem : public odpd::System {
   int dimension_;
   Asked asked_;
   bool anchored_ = false;
+  odpd::Share share_;
   std::map<std::pair<std::int32_t, std::int32_t>, std::vector<double>> blocks_;
   std::unique_ptr<odpd::AssembledSystem> assembled_;
 };
