@@ -234,6 +234,7 @@ template <int D>
 void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights& weights,
                         Unknowns& guess) {
   const System& system = assemble(stage, weights);
+  judge_null_motions(stage);
   {
     const PhaseTimer timer(phases_, Phase::solve);
     solver_->bind(system);

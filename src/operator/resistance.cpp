@@ -23,8 +23,14 @@ Vec<D> load(std::span<const double> x, std::size_t node) {
   return v;
 }
 
-// Determinant of a symmetric positive semidefinite D x D block relative to the largest it could have with its
-// trace: 1 for an isotropic block, 0 for a singular one.
+template <int D>
+std::size_t other_end(const PairNetwork<D>& network, std::int32_t edge, std::int32_t particle) {
+  const auto k = index(edge);
+  return index(network.i[k] == particle ? network.j[k] : network.i[k]);
+}
+
+}  // namespace
+
 template <int D>
 double relative_determinant(const double* block) {
   std::array<double, D * D> m;
@@ -44,17 +50,10 @@ double relative_determinant(const double* block) {
 }
 
 template <int D>
-std::size_t other_end(const PairNetwork<D>& network, std::int32_t edge, std::int32_t particle) {
-  const auto k = index(edge);
-  return index(network.i[k] == particle ? network.j[k] : network.i[k]);
-}
-
-}  // namespace
-
-template <int D>
 void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs,
                             const Particles<D>& particles, std::span<const Vec<D>> positions,
-                            double shift, double stiffness_time, double bond_time) {
+                            double shift, double stiffness_time, double bond_time,
+                            std::span<const Vec<D>> arms) {
   nodes_ = dofs.sites();
   share_ = dofs.site_share();
   shift_ = shift;
@@ -82,9 +81,12 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
         return std::all_of(block.begin(), block.end(), [](double entry) { return entry == 0.0; });
       }));
   if (translations_are_null_) anchor_.clear();
+  free_ = {};
   if (shift != 0.0) return;
   share_.ranks->together([&] { check_rattlers(network, dofs, particles); });
   share_.ranks->together([&] { check_clusters(dofs, particles); });
+  // With the centre of mass held the problem is another one.
+  if (!holds_centre_of_mass()) free_ = free_motions<D>(*this, dofs, arms, parent_);
 }
 
 template <int D>
@@ -233,14 +235,20 @@ void Resistance<D>::check_clusters(const DofMap<D>& dofs, const Particles<D>& pa
   // Without any known velocity the first group carries the null space, and there may be no second.
   if (translations_are_null_ && n_nodes > 0) held[index(root(0))] = true;
   for (std::size_t n = 0; n < n_nodes; ++n) {
-    if (held[index(root(static_cast<std::int32_t>(n)))]) continue;
+    const std::int32_t own = root(static_cast<std::int32_t>(n));
+    if (held[index(own)]) continue;
+    std::int64_t members = 0;
+    for (std::size_t m = n; m < n_nodes; ++m)
+      if (root(static_cast<std::int32_t>(m)) == own) ++members;
     throw SolverError(
-        fmt::format("particle {} belongs to a group of particles out of reach of all others, which "
-                    "can move freely as one, so R is "
-                    "singular. Cures: a weak pairwise friction of longer range "
+        fmt::format("{} particle(s), among them particle {}, are a group of particles out of reach "
+                    "of all others, which can move freely as one, so R is "
+                    "singular. Cures: a drag (fluid.zeta_0), mass (fluid.mass), a weak pairwise "
+                    "friction of longer range "
+                    "that reaches the others "
                     "(fluid.rattler_friction = {{ gamma = 0.1, cutoff = "
                     "2.0 }}), a higher density, or a larger cutoff",
-                    particles.id[index(dofs.particle_of(n))]),
+                    members, particles.id[index(dofs.particle_of(n))]),
         SolverError::Cause::singular);
   }
 }
@@ -332,6 +340,8 @@ const BlockCsr& Resistance<D>::matrix() const {
   return matrix_;
 }
 
+template double relative_determinant<2>(const double*);
+template double relative_determinant<3>(const double*);
 template class Resistance<2>;
 template class Resistance<3>;
 

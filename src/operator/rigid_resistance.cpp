@@ -29,7 +29,7 @@ void RigidResistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>&
                                  const Particles<D>& particles, std::span<const Vec<D>> positions,
                                  std::span<const Vec<D>> arms, double shift, double stiffness_time,
                                  double bond_time) {
-  sites_.rebuild(network, dofs, particles, positions, shift, stiffness_time, bond_time);
+  sites_.rebuild(network, dofs, particles, positions, shift, stiffness_time, bond_time, arms);
   dofs_ = dofs.bodies() > 0 ? &dofs : nullptr;
   if (dofs_ == nullptr) return;
   arms_.assign(arms.begin(), arms.end());

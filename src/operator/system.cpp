@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "odpd/core/error.h"
@@ -35,6 +36,28 @@ void validate(const BlockCsr& a) {
 }
 
 }  // namespace
+
+std::vector<std::vector<double>> System::null_space() const {
+  std::vector<std::vector<double>> basis;
+  const Translations moved = translations();
+  for (std::size_t c = 0; translations_are_null() && c < index(moved.components); ++c) {
+    std::vector<double> unit(index(moved.components), 0.0);
+    unit[c] = 1.0 / std::sqrt(static_cast<double>(moved.count(index(size()), share())));
+    basis.emplace_back(index(size()), 0.0);
+    moved.add(unit, basis.back());
+  }
+  basis.insert(basis.end(), null_motions().begin(), null_motions().end());
+  return basis;
+}
+
+/// x := x - U U^T x.
+void System::remove_null_motions(std::span<double> x) const {
+  for (const std::vector<double>& u : null_motions()) {
+    const double part = inner_product(u, x);
+    parallel_for(static_cast<std::int64_t>(x.size()),
+                 [&](std::int64_t k) { x[index(k)] -= part * u[index(k)]; });
+  }
+}
 
 AssembledSystem::AssembledSystem(BlockCsr matrix, bool translations_are_null,
                                  bool holds_centre_of_mass)

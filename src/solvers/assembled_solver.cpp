@@ -1,6 +1,7 @@
 #include "odpd/solvers/assembled_solver.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "odpd/core/error.h"
 #include "odpd/core/timer.h"
@@ -17,7 +18,33 @@ void AssembledSolver::set_up() {
   const Stopwatch watch;
   const BlockCsr& a = system_->matrix();
   assembly_seconds_ = watch.seconds();
-  set_up_matrix(a);
+  null_translations_ = system_->translations_are_null() && system_->null_motions().empty();
+  if (system_->null_motions().empty()) {
+    set_up_matrix(a);
+  } else {
+    set_up_matrix(with_springs(a));
+  }
+}
+
+/// A + sum_p A_pp e_p e_p^T. The p are pivots of the null space: no combination of null motions rests at all of them.
+BlockCsr AssembledSolver::with_springs(const BlockCsr& a) const {
+  BlockCsr regular = a;
+  const std::size_t b = index(a.block);
+  std::vector<std::vector<double>> motions = system_->null_space();
+  for (; !motions.empty(); motions.pop_back()) {
+    const std::vector<double>& u = motions.back();
+    std::size_t p = 0;
+    for (std::size_t i = 0; i < u.size(); ++i)
+      if (std::abs(u[i]) > std::abs(u[p])) p = i;
+    const auto row = a.column.begin() + a.start[p / b];
+    const auto k = std::find(row, a.column.end(), static_cast<std::int32_t>(p / b));
+    regular.value[index(k - a.column.begin()) * b * b + p % b * (b + 1)] *= 2.0;
+    for (std::size_t other = 0; other + 1 < motions.size(); ++other) {
+      const double part = motions[other][p] / u[p];
+      for (std::size_t i = 0; i < u.size(); ++i) motions[other][i] -= part * u[i];
+    }
+  }
+  return regular;
 }
 
 /// Solves A Z = E and inverts E^T Z.
@@ -65,7 +92,11 @@ void AssembledSolver::hold_centre(std::span<double> x) const {
 
 Solver::Attempt AssembledSolver::attempt(std::span<const double> b, std::span<double> x,
                                          double tolerance) {
-  if (!system_->holds_centre_of_mass()) return attempt_free(b, x, tolerance);
+  if (!system_->holds_centre_of_mass()) {
+    const Attempt result = attempt_free(b, x, tolerance);
+    if (!system_->null_motions().empty()) system_->project(x);
+    return result;
+  }
   const std::int64_t budget = iterations_left_;
   std::int64_t spent = 0;
   if (response_.empty()) {

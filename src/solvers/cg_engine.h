@@ -29,10 +29,10 @@ std::unique_ptr<CgEngine> make_mixed_cg(const System& system, const SolverOption
 /// Residuals of conjugate gradients rise and fall, but never by this much on a regular system.
 inline constexpr double divergence = 1e6;
 inline constexpr const char* diverged =
-    "the residual grows without bound: the matrix is singular and the forces are not balanced, as "
-    "for a group of "
-    "particles out of reach of all others; a weak pairwise friction of longer range "
-    "(fluid.rattler_friction) joins them";
+    "the residual grows without bound: the matrix is singular, as where some particles can move "
+    "against others "
+    "without friction, and the forces do work on that motion; a drag (fluid.zeta_0) or mass "
+    "(fluid.mass) helps";
 inline constexpr const char* no_longer_finite = "numbers are no longer finite";
 
 }  // namespace odpd

@@ -113,7 +113,7 @@ void Cholesky::set_up_matrix(const BlockCsr& a) {
   work_.clear();
   failure_.clear();
   size_ = system_->size();
-  if (system_->translations_are_null()) size_ -= system_->translations().components;
+  if (null_translations_) size_ -= system_->translations().components;
   if (size_ <= 0) return;  // a single free node does not move
   const Stopwatch watch;
   copy(a);
@@ -149,7 +149,7 @@ Solver::Attempt Cholesky::attempt_free(std::span<const double> b, std::span<doub
   } else {
     result.ok = true;
   }
-  if (system_->translations_are_null()) system_->project(x);
+  if (null_translations_) system_->project(x);
   return result;
 }
 

@@ -42,6 +42,10 @@ constexpr std::int64_t fewest_for_rate = 8;
 template <int D>
 constexpr std::int64_t fewest_for_grid = D == 2 ? 500 : 5000;
 constexpr double shift_without_grid = 0.02;
+constexpr const char* no_grid_for_null_motions =
+    "preconditioner multilevel knows no null motions but translations: block-Jacobi instead, while "
+    "particles are free to "
+    "turn";
 
 template <int D>
 class MixedCg : public CgEngine {
@@ -106,6 +110,10 @@ void MixedCg<D>::set_up(const System& system) {
   rows_.pack(*resistance_);
   note_.clear();
   with_grid_ = preconditioner_ == "multilevel" || (preconditioner_ == "auto" && grid_pays());
+  if (with_grid_ && !system.null_motions().empty()) {
+    if (preconditioner_ == "multilevel") note_ = no_grid_for_null_motions;
+    with_grid_ = false;
+  }
   for (FloatArray* v : {&r_, &z_, &p_, &q_, &x_}) v->resize(rows_.vector_size());
   residual_.resize(index(system.size()));
   sums_.resize(index(2 * blocks()));

@@ -267,7 +267,7 @@ void PetscSolver::make_matrix(const BlockCsr& a) {
     check(MatSetOption(matrix_, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
   fill(a, matrix_);
   check(MatSetOption(matrix_, MAT_SYMMETRIC, PETSC_TRUE));
-  if (!system_->translations_are_null()) check(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
+  if (!null_translations_) check(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
 }
 
 void PetscSolver::attach_null_spaces() {
@@ -277,7 +277,7 @@ void PetscSolver::attach_null_spaces() {
     check(MatSetNearNullSpace(matrix_, near));
     check(MatNullSpaceDestroy(&near));
   }
-  if (system_->translations_are_null()) {
+  if (null_translations_) {
     MatNullSpace null = translations(*system_);
     check(MatSetNullSpace(matrix_, null));
     check(MatNullSpaceDestroy(&null));
@@ -293,8 +293,7 @@ void PetscSolver::make_ksp() {
   check(KSPGetPC(ksp_, &pc));
   check_options(PCSetType(pc, petsc_option(user_, "pc_type", PCICC).c_str()));
   // The last pivot of a singular matrix is rounding.
-  if (system_->translations_are_null())
-    check(PCFactorSetShiftType(pc, MAT_SHIFT_POSITIVE_DEFINITE));
+  if (null_translations_) check(PCFactorSetShiftType(pc, MAT_SHIFT_POSITIVE_DEFINITE));
   check(KSPSetNormType(ksp_, KSP_NORM_UNPRECONDITIONED));
   check_options(KSPSetFromOptions(ksp_));
   PetscBool direct = PETSC_FALSE;

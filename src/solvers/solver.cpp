@@ -22,7 +22,7 @@ constexpr double projection_rounding = 1e-14;
 
 const char* problem_text(const System& system) {
   if (system.holds_centre_of_mass()) return "centre of mass held still";
-  return system.translations_are_null() ? "R v = f, null space removed" : "R v = f";
+  return system.singular() ? "R v = f, null space removed" : "R v = f";
 }
 
 bool all_finite(std::span<const double> x) {
@@ -152,7 +152,9 @@ std::string Solver::verdict(const Attempt& last, const Measured& measured,
   if (!std::isfinite(measured.residual) || !std::isfinite(measured.curvature)) {
     return name() +
            ": the solution is not finite: the matrix is singular or far from positive "
-           "definite; check that every particle is held by enough neighbours";
+           "definite; check that every particle is held by enough neighbours, or give them a drag "
+           "(fluid.zeta_0) or mass "
+           "(fluid.mass)";
   }
   const bool met =
       options_.stopping == Stopping::increment ? last.ok : measured.residual <= options_.tolerance;

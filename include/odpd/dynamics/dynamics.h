@@ -100,7 +100,7 @@ class Dynamics {
   /// Assembles A = P^T (R + K_pairs stiffness_time + K_bonds bond_time) P + zeta_0 + inertia at the stage.
   const System& assemble(const Stage<D>& stage, const StepWeights& weights);
   /// Solves A q = load for the stage's velocities: `guess` in, answer out. Throws SolverError when the solver did not
-  /// converge, BlowUpError when a velocity is not finite. Where nothing has a known velocity, the mean of the answer is
+  /// converge, and where forces from outside drive a null motion; BlowUpError when a velocity is not finite. Where nothing has a known velocity, the mean of the answer is
   /// exact: with mass or drag, and no bodies, it is what momentum balance says; with neither it is 0, or under shear
   /// that of the sheared flow.
   void solve(Stage<D>& stage, const Unknowns& load, const StepWeights& weights, Unknowns& guess);
@@ -127,6 +127,7 @@ class Dynamics {
   void add_mean_flow(const Stage<D>& stage, Unknowns& q);
   void balance_momentum(const Unknowns& load, double shift, Unknowns& q);
   void note(const SolveReport& report);
+  void judge_null_motions(const Stage<D>& stage);
 
   const Box<D> box_;
   Particles<D>& particles_;
@@ -140,6 +141,7 @@ class Dynamics {
   RigidResistance<D> resistance_;
   PhaseSeconds phases_;
   SolverStatistics statistics_;
+  bool told_null_motions_ = false;
 };
 
 }  // namespace odpd

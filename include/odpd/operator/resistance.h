@@ -12,10 +12,16 @@
 #include "odpd/core/index.h"
 #include "odpd/geometry/box.h"
 #include "odpd/operator/dof_map.h"
+#include "odpd/operator/free_motions.h"
 #include "odpd/operator/system.h"
 #include "odpd/pairs/network.h"
 
 namespace odpd {
+
+/// Determinant of a symmetric positive semidefinite D x D block relative to the largest it could have with its trace: 1
+/// for an isotropic block, 0 for a singular one.
+template <int D>
+double relative_determinant(const double* block);
 
 template <int D>
 class Resistance : public System {
@@ -41,11 +47,12 @@ class Resistance : public System {
   /// friction alone).
   /// All ranks call it together and throw the same error.
   /// Throws SolverError for a rattler: a free particle whose friction block is singular at shift = 0, naming it by
-  /// identity, its neighbours and the cures; and for a group of particles out of reach of all others. (Inner floppy modes
-  /// of such a group, as in a chain with central friction, are left to the solver.)
+  /// identity, its neighbours and the cures; and for a group of particles out of reach of all others. What is free to turn,
+  /// or to slide along what holds it, has null motions (operator/free_motions.h). (Inner floppy modes of a group, as in a
+  /// chain with central friction, are left to the solver.) `arms`: as for DofMap.
   void rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs, const Particles<D>& particles,
                std::span<const Vec<D>> positions, double shift, double stiffness_time = 0.0,
-               double bond_time = 0.0);
+               double bond_time = 0.0, std::span<const Vec<D>> arms = {});
 
   /// The same box with its sliding images elsewhere.
   void slide(const Box<D>& box) { box_ = box; }
@@ -60,6 +67,9 @@ class Resistance : public System {
   int periodic_directions() const override { return box_.periodic_directions(); }
   bool translations_are_null() const override { return translations_are_null_; }
   bool holds_centre_of_mass() const override { return hold_ && !translations_are_null_; }
+  /// Vectors of unknowns, with bodies too: those of RigidResistance.
+  std::span<const std::vector<double>> null_motions() const override { return free_.basis; }
+  std::span<const FreeGroup> free_groups() const { return free_.groups; }
   std::uint64_t generation() const override { return generation_; }
   Share share() const override { return share_; }
 
@@ -71,6 +81,10 @@ class Resistance : public System {
   /// g = sqrt(|zeta_par - zeta_perp|) e of an edge.
   const Vec<D>& g(const Link& link) const { return g_[index(link.edge)]; }
   const Across& across(const Link& link) const { return across_[index(link.edge)]; }
+  /// The link carries friction.
+  bool ties(const Link& link) const {
+    return dot(g(link), g(link)) > 0.0 || (!across_.empty() && across(link).zeta_perp > 0.0);
+  }
   /// Of all edges of the network; friction across e may be empty.
   std::span<const Vec<D>> g() const { return g_; }
   std::span<const Across> across() const { return across_; }
@@ -90,10 +104,6 @@ class Resistance : public System {
   void count_links(const PairNetwork<D>& network, const DofMap<D>& dofs);
   void fill_row(std::size_t node, std::int32_t particle, const PairNetwork<D>& network,
                 const DofMap<D>& dofs);
-  /// The link carries friction.
-  bool ties(const Link& link) const {
-    return dot(g(link), g(link)) > 0.0 || (!across_.empty() && across(link).zeta_perp > 0.0);
-  }
   void check_clusters(const DofMap<D>& dofs, const Particles<D>& particles);
   void check_rattlers(const PairNetwork<D>& network, const DofMap<D>& dofs,
                       const Particles<D>& particles) const;
@@ -112,6 +122,7 @@ class Resistance : public System {
   double shift_ = 0.0;
   double stiffness_time_ = 0.0, bond_time_ = 0.0;
   bool translations_are_null_ = false;
+  FreeMotions free_;
   std::vector<double> positions_;
   std::uint64_t generation_ = 0;
   mutable BlockCsr matrix_;  // made on demand

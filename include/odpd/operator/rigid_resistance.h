@@ -42,6 +42,9 @@ class RigidResistance : public System {
   int periodic_directions() const override { return sites_.periodic_directions(); }
   bool translations_are_null() const override { return sites_.translations_are_null(); }
   bool holds_centre_of_mass() const override { return sites_.holds_centre_of_mass(); }
+  std::span<const std::vector<double>> null_motions() const override {
+    return sites_.null_motions();
+  }
   std::uint64_t generation() const override { return sites_.generation(); }
   Share share() const override { return dofs_->share(); }
 

@@ -6,6 +6,8 @@
 //   regular      A is definite:                      A x = b
 //   null space   A E = 0 for the translations E:     A x = Pi b,  E^T x = 0,   Pi = I - E (E^T E)^-1 E^T
 //   held         A definite, centre of mass held:    Pi A x = Pi b,  E^T x = 0  (the exact problem of Scheme 2)
+// A regular system or one with a null space may have further null motions U, orthonormal and orthogonal to E where E is null
+// (operator/free_motions.h); then E stands for all of them.
 // In all of them the true relative residual is |Pi (b - A x)| / |Pi b| with Pi = I for the regular one.
 #include <cstdint>
 #include <span>
@@ -42,15 +44,21 @@ class System {
 
   /// Translations are in the null space (nothing with known velocity holds the fluid, no shift).
   virtual bool translations_are_null() const = 0;
+  /// U, a vector of size() numbers each: what else has A u = 0.
+  virtual std::span<const std::vector<double>> null_motions() const { return {}; }
+  bool singular() const { return translations_are_null() || !null_motions().empty(); }
+  /// Orthonormal vectors that span the null space: E, where it is null, then U.
+  std::vector<std::vector<double>> null_space() const;
   /// The centre of mass is to be held still although A is definite (the constrained problem).
   virtual bool holds_centre_of_mass() const = 0;
-  bool projected() const { return translations_are_null() || holds_centre_of_mass(); }
+  bool projected() const { return singular() || holds_centre_of_mass(); }
   /// The nodes of this rank, and the ranks of the others. All ranks call what sums over vectors together: `project`, `inner_product`
   /// and `norm`, and whoever decides by entries of a vector asks all of them.
   virtual Share share() const { return {}; }
   /// x := Pi x; nothing where the problem is regular.
   void project(std::span<double> x) const {
-    if (projected()) translations().remove_mean(x, share());
+    if (translations_are_null() || holds_centre_of_mass()) translations().remove_mean(x, share());
+    if (!null_motions().empty()) remove_null_motions(x);
   }
   double inner_product(std::span<const double> a, std::span<const double> b) const {
     return share().dot(a, b, block_size());
@@ -59,6 +67,9 @@ class System {
 
   /// Changes whenever A changes.
   virtual std::uint64_t generation() const = 0;
+
+ private:
+  void remove_null_motions(std::span<double> x) const;
 };
 
 /// A System around an assembled matrix: toys in tests, matrices from elsewhere.

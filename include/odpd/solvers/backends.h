@@ -17,6 +17,7 @@ std::unique_ptr<Solver> make_petsc(const SolverOptions& options);
 /// What every backend says of an indefinite matrix.
 inline constexpr const char* not_definite =
     "the matrix is not positive definite: check friction weights, masses and stiffness for "
-    "negative values, and that every particle is held by enough neighbours";
+    "negative values, and that every particle is held by enough neighbours, or give them a drag "
+    "(fluid.zeta_0) or mass (fluid.mass)";
 
 }  // namespace odpd

@@ -1,0 +1,39 @@
+#pragma once
+// Rigid motions of a group of linked particles that meet no friction,
+//
+//   u_i = V + w x x_i,   R u = 0,   x_i found along the links, not wrapped into the box.
+//
+// Central friction along rigid links has d(d+1)/2 of them; particles of known velocity, friction across the links and links
+// that go round a periodic box take some away. Which are left follows from the dissipation of these motions, u^T R u.
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "odpd/operator/dof_map.h"
+
+namespace odpd {
+
+template <int D>
+class Resistance;
+
+/// A group of particles and how many motions of it are free.
+struct FreeGroup {
+  std::int64_t particles = 0;
+  std::int32_t first = 0;  ///< one of them, as a place in memory
+  std::int64_t motions = 0;
+};
+
+struct FreeMotions {
+  std::vector<FreeGroup>
+      groups;  ///< with at least one free motion, in the order of their first sites
+  std::vector<std::vector<double>> basis;  ///< orthonormal vectors of unknowns, group by group
+};
+
+/// All of them, but for translations where nothing has a known velocity: System::translations has those. `parent`: a forest
+/// over the sites whose trees are the groups; without known velocities there is one. `arms`: as for DofMap.
+/// A fluid that fills its box, or that walls hold, is told from some links; else all links are looked at.
+template <int D>
+FreeMotions free_motions(const Resistance<D>& resistance, const DofMap<D>& dofs,
+                         std::span<const Vec<D>> arms, std::span<const std::int32_t> parent);
+
+}  // namespace odpd

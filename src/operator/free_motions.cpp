@@ -1,0 +1,367 @@
+#include "odpd/operator/free_motions.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "odpd/core/index.h"
+#include "odpd/core/rotation.h"
+#include "odpd/operator/resistance.h"
+
+namespace odpd {
+
+namespace {
+
+constexpr std::size_t walks = 16;  // around the box, before all links are looked at
+// Square root of u^T R u beside that of R, for |u| = 1: rounding gives some 1e-15, and R u of what is left out is below this
+// part of R.
+constexpr double no_dissipation = 1e-9;
+constexpr double parallel = 1e-3;  // sine of the angle of two directions
+
+template <int D>
+Vec<D> place(const Resistance<D>& resistance, std::size_t site) {
+  Vec<D> r;
+  for (std::size_t c = 0; c < D; ++c) r.x[c] = resistance.positions()[site * D + c];
+  return r;
+}
+
+/// From a site to the other end of its link.
+template <int D>
+Vec<D> way(const Resistance<D>& resistance, std::size_t site,
+           const typename Resistance<D>::Link& l) {
+  return resistance.box().separation(place(resistance, index(l.node)), place(resistance, site));
+}
+
+inline bool independent(const Vec<2>& a, const Vec<2>& b) {
+  return std::abs(a[0] * b[1] - a[1] * b[0]) > parallel * norm(a) * norm(b);
+}
+inline bool independent(const Vec<3>& a, const Vec<3>& b) {
+  return norm(swing(a, b)) > parallel * norm(a) * norm(b);
+}
+
+/// Directions in the order of coming: enough of them, D - 1 independent ones, leave no axis to turn about.
+template <int D>
+class Directions {
+ public:
+  void add(const Vec<D>& d) {
+    if (count_ == 0) first_ = d;
+    if (count_ == 0 || (count_ == 1 && independent(first_, d))) ++count_;
+  }
+  bool enough() const { return count_ >= D - 1; }
+
+ private:
+  Vec<D> first_{};
+  int count_ = 0;
+};
+
+// ---- Groups that hold fast, told from a few links
+
+/// A path along links from `start`, ever further along c and back to an image of `start`: how far it went round the box.
+template <int D>
+std::optional<Vec<D>> winding(const Resistance<D>& resistance, std::size_t start, int c) {
+  const double length = resistance.box().size[c];
+  Vec<D> gone{};
+  std::size_t site = start;
+  for (std::int64_t step = 0; step < resistance.nodes() && gone[c] < 2.0 * length; ++step) {
+    std::int32_t next = -1;
+    Vec<D> reached{};
+    double best = 0.0;
+    for (const auto& link : resistance.links(site)) {
+      if (!resistance.ties(link)) continue;
+      const Vec<D> d = way(resistance, site, link);
+      const Vec<D> there = gone + d;
+      if (index(link.node) == start && there[c] > 0.25 * length) return there;
+      Vec<D> aside = there;
+      aside[c] = 0.0;
+      const double merit = d[c] - norm(aside);
+      if (!(d[c] > 0.0) || (next >= 0 && merit <= best)) continue;
+      next = link.node;
+      reached = there;
+      best = merit;
+    }
+    if (next < 0) return {};
+    site = index(next);
+    gone = reached;
+  }
+  return {};
+}
+
+/// Links that go round the box one way leave rotations about that way, two ways none; in two dimensions one is enough.
+template <int D>
+bool goes_round(const Resistance<D>& resistance) {
+  Directions<D> ways;
+  for (int c = 0; c < D && !ways.enough(); ++c) {
+    if (!resistance.box().is_periodic(c)) continue;
+    std::optional<Vec<D>> found;
+    for (std::size_t k = 0; k < walks && !found; ++k)
+      found = winding(resistance, k * index(resistance.nodes()) / walks, c);
+    if (found) ways.add(*found);
+  }
+  return ways.enough();
+}
+
+/// Friction with known velocities holds the site in every direction.
+template <int D>
+bool stuck(const Resistance<D>& resistance, std::size_t site) {
+  return relative_determinant<D>(resistance.anchors()[site].data()) > 1e-6;
+}
+
+/// The site and D - 1 linked neighbours, not on a line with it, are stuck: so their group is.
+template <int D>
+bool holds_fast(const Resistance<D>& resistance, std::size_t site) {
+  if (!stuck(resistance, site)) return false;
+  Directions<D> ways;
+  for (const auto& link : resistance.links(site)) {
+    if (!resistance.ties(link) || !stuck(resistance, index(link.node))) continue;
+    const Vec<D> d = way(resistance, site, link);
+    if (norm(d) > 0.0) ways.add(d);
+    if (ways.enough()) return true;
+  }
+  return false;
+}
+
+// ---- The others, from all of their links
+
+/// Rows of a tall matrix S, kept as a triangle T with T^T T = S^T S: no square is formed, so that what is zero to rounding is
+/// told from what is small.
+class Slips {
+ public:
+  explicit Slips(int columns) : rows_(Eigen::MatrixXd::Zero(64 + columns, columns)) {}
+  void add(const Eigen::RowVectorXd& row) {
+    if (used_ == rows_.rows()) compress();
+    rows_.row(used_++) = row;
+  }
+  Eigen::MatrixXd triangle() {
+    compress();
+    return rows_.topRows(rows_.cols());
+  }
+
+ private:
+  void compress() {
+    const Eigen::MatrixXd r = rows_.householderQr().matrixQR().triangularView<Eigen::Upper>();
+    used_ = rows_.cols();
+    rows_.setZero();
+    rows_.topRows(used_) = r.topRows(used_);
+  }
+
+  Eigen::MatrixXd rows_;
+  Eigen::Index used_ = 0;
+};
+
+template <int D>
+class GroupMotions {
+ public:
+  GroupMotions(const Resistance<D>& resistance, const DofMap<D>& dofs, std::span<const Vec<D>> arms)
+      : resistance_(resistance),
+        dofs_(dofs),
+        arms_(arms),
+        body_(index(dofs.sites()), -1),
+        node_(index(dofs.sites()), 0),
+        at_(index(dofs.sites())),
+        seen_(index(dofs.sites()), 0) {
+    for (std::size_t b = 0; b < index(dofs.bodies()); ++b)
+      for (const std::int32_t p : dofs.constituents(b))
+        body_[index(dofs.site_of(index(p)))] = static_cast<std::int32_t>(b);
+    std::size_t free = 0;
+    for (std::size_t s = 0; s < body_.size(); ++s)
+      node_[s] = body_[s] < 0 ? dofs.free_node(free++) : dofs.body_node(index(body_[s]));
+  }
+
+  void add_to(FreeMotions& found, std::size_t root) {
+    unfold(root);
+    const bool anchored = !resistance_.anchors().empty();
+    const int first = anchored ? 0 : D;
+    const Eigen::MatrixXd free = without_dissipation(first);
+    for (Eigen::Index k = 0; k < free.cols(); ++k) {
+      std::vector<double> u(index(dofs_.unknowns()), 0.0);
+      for (Eigen::Index c = 0; c < free.rows(); ++c)
+        add(first + static_cast<int>(c), free(c, k), u);
+      found.basis.push_back(std::move(u));
+    }
+    if (free.cols() > 0)
+      found.groups.push_back({static_cast<std::int64_t>(sites_.size()), dofs_.particle_of(root),
+                              static_cast<std::int64_t>(free.cols())});
+  }
+
+ private:
+  static constexpr int motions = D + rotation_components<D>;
+
+  /// Places of the group's sites along its links, its movers, and their centre.
+  void unfold(std::size_t root) {
+    sites_.assign(1, root);
+    movers_.clear();
+    at_[root] = place(resistance_, root);
+    seen_[root] = 1;
+    const auto reach = [&](std::size_t site, const Vec<D>& there) {
+      if (seen_[site] != 0) return;
+      seen_[site] = 1;
+      at_[site] = there;
+      sites_.push_back(site);
+    };
+    std::vector<char> body_seen(index(dofs_.bodies()), 0);
+    for (std::size_t k = 0; k < sites_.size(); ++k) {
+      const std::size_t site = sites_[k];
+      for (const auto& link : resistance_.links(site))
+        if (resistance_.ties(link))
+          reach(index(link.node), at_[site] + way(resistance_, site, link));
+      if (body_[site] < 0) {
+        movers_.push_back({at_[site], node_[site], -1});
+        continue;
+      }
+      const auto body = index(body_[site]);
+      if (body_seen[body] != 0) continue;
+      body_seen[body] = 1;
+      const Vec<D> centre = at_[site] - arms_[index(dofs_.particle_of(site))];
+      for (const std::int32_t p : dofs_.constituents(body))
+        reach(index(dofs_.site_of(index(p))), centre + arms_[index(p)]);
+      movers_.push_back({centre, node_[site], body_[site]});
+    }
+    Vec<D> sum{};
+    for (const Mover& m : movers_) sum += m.centre;
+    centre_ = (1.0 / static_cast<double>(movers_.size())) * sum;
+  }
+
+  /// Motion c of a point at r: translations, then rotations about the centre.
+  Vec<D> velocity(int c, const Vec<D>& r) const {
+    Vec<D> unit{};
+    unit[c < D ? c : c - D] = 1.0;
+    return c < D ? unit : swing(unit, r - centre_);
+  }
+  /// Motion c of the unknowns, times a.
+  void add(int c, double a, std::vector<double>& u) const {
+    for (const Mover& m : movers_) {
+      const Vec<D> v = velocity(c, m.centre);
+      for (std::size_t k = 0; k < D; ++k) u[m.node * D + k] += a * v.x[k];
+      if (c >= D && m.body >= 0) u[index(m.body) * D + index(c - D)] += a;
+    }
+  }
+
+  /// Adds slips times the roots of their friction: of links to later sites, and of known neighbours.
+  void add_slips(std::size_t site, int first, Slips& slips) const {
+    const auto along = [&](const Vec<D>& direction, const auto& slip_of) {
+      Eigen::RowVectorXd row(motions - first);
+      for (int c = first; c < motions; ++c) row(c - first) = dot(direction, slip_of(c));
+      slips.add(row);
+    };
+    for (const auto& link : resistance_.links(site)) {
+      if (!resistance_.ties(link) || index(link.node) < site) continue;
+      const auto slip = [&](int c) {
+        return velocity(c, at_[site]) - velocity(c, at_[index(link.node)]);
+      };
+      const Vec<D>& g = resistance_.g(link);
+      if (!resistance_.transverse()) {
+        along(g, slip);
+        continue;
+      }
+      typename Resistance<D>::Block friction{};
+      const auto& across = resistance_.across(link);
+      for (std::size_t row = 0; row < D; ++row)
+        for (std::size_t col = 0; col < D; ++col)
+          friction[row * D + col] =
+              across.sign * g.x[row] * g.x[col] + (row == col ? across.zeta_perp : 0.0);
+      for (const Vec<D>& root : roots(friction)) along(root, slip);
+    }
+    if (resistance_.anchors().empty()) return;
+    for (const Vec<D>& root : roots(resistance_.anchors()[site]))
+      along(root, [&](int c) { return velocity(c, at_[site]); });
+  }
+  /// Vectors with block = sum of their squares; what rounding adds to a singular block left out.
+  static std::vector<Vec<D>> roots(const typename Resistance<D>::Block& block) {
+    const Eigen::Map<const Eigen::Matrix<double, D, D, Eigen::RowMajor>> matrix(block.data());
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> parts(matrix);
+    std::vector<Vec<D>> found;
+    for (int k = 0; k < D; ++k) {
+      const double size = parts.eigenvalues()(k);
+      if (!(size > 1e-12 * parts.eigenvalues()(D - 1))) continue;
+      Vec<D> root;
+      for (int c = 0; c < D; ++c) root[c] = std::sqrt(size) * parts.eigenvectors()(c, k);
+      found.push_back(root);
+    }
+    return found;
+  }
+
+  /// Combinations of the motions from `first` on, orthonormal over the unknowns, that cost nothing: columns.
+  Eigen::MatrixXd without_dissipation(int first) const {
+    const int count = motions - first;
+    Eigen::MatrixXd product = Eigen::MatrixXd::Zero(count, count);
+    for (int a = 0; a < count; ++a)
+      for (int b = 0; b < count; ++b)
+        for (const Mover& m : movers_) {
+          product(a, b) += dot(velocity(first + a, m.centre), velocity(first + b, m.centre));
+          if (a == b && first + a >= D && m.body >= 0) product(a, b) += 1.0;
+        }
+    Slips slips(count);
+    double stiffest = 0.0;
+    for (const std::size_t site : sites_) {
+      add_slips(site, first, slips);
+      for (std::size_t c = 0; c < D; ++c)
+        stiffest = std::max(stiffest, resistance_.diagonal()[site][c * D + c]);
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> sizes(product);
+    const double largest = sizes.eigenvalues().maxCoeff();
+    Eigen::MatrixXd unit(count, 0);  // orthonormal; a line does not turn about itself
+    for (int k = 0; k < count; ++k) {
+      const double size = sizes.eigenvalues()(k);
+      if (!(size > 1e-12 * largest)) continue;
+      unit.conservativeResize(Eigen::NoChange, unit.cols() + 1);
+      unit.rightCols(1) = sizes.eigenvectors().col(k) / std::sqrt(size);
+    }
+    if (unit.cols() == 0) return unit;
+    const Eigen::JacobiSVD<Eigen::MatrixXd> costs(slips.triangle() * unit, Eigen::ComputeFullV);
+    Eigen::Index costly = 0;  // singular values descend
+    while (costly < costs.singularValues().size() &&
+           costs.singularValues()(costly) > no_dissipation * std::sqrt(stiffest))
+      ++costly;
+    return unit * costs.matrixV().rightCols(unit.cols() - costly);
+  }
+
+  struct Mover {
+    Vec<D> centre;
+    std::size_t node;
+    std::int32_t body;  // -1: a particle
+  };
+
+  const Resistance<D>& resistance_;
+  const DofMap<D>& dofs_;
+  std::span<const Vec<D>> arms_;
+  std::vector<std::int32_t> body_;  // per site, -1: none
+  std::vector<std::size_t> node_;   // per site
+  std::vector<Vec<D>> at_;          // per site
+  std::vector<char> seen_;          // per site
+  std::vector<std::size_t> sites_;  // of the group
+  std::vector<Mover> movers_;       // of the group
+  Vec<D> centre_{};
+};
+
+}  // namespace
+
+template <int D>
+FreeMotions free_motions(const Resistance<D>& resistance, const DofMap<D>& dofs,
+                         std::span<const Vec<D>> arms, std::span<const std::int32_t> parent) {
+  FreeMotions found;
+  const bool anchored = !resistance.anchors().empty();
+  if (parent.empty() || (!anchored && goes_round(resistance))) return found;
+  std::vector<std::size_t> open;  // roots of groups that may have free motions
+  for (std::size_t n = 0; n < parent.size(); ++n)
+    if (index(parent[n]) == n) open.push_back(n);
+  const auto root = [&](std::size_t n) {
+    while (index(parent[n]) != n) n = index(parent[n]);
+    return n;
+  };
+  for (std::size_t n = 0; anchored && n < parent.size() && !open.empty(); ++n)
+    if (holds_fast(resistance, n)) std::erase(open, root(n));
+  if (open.empty()) return found;
+  GroupMotions<D> group(resistance, dofs, arms);
+  for (const std::size_t n : open) group.add_to(found, n);
+  return found;
+}
+
+template FreeMotions free_motions<2>(const Resistance<2>&, const DofMap<2>&,
+                                     std::span<const Vec<2>>, std::span<const std::int32_t>);
+template FreeMotions free_motions<3>(const Resistance<3>&, const DofMap<3>&,
+                                     std::span<const Vec<3>>, std::span<const std::int32_t>);
+
+}  // namespace odpd
