@@ -54,6 +54,21 @@ TEST(Quadrature, TakesPowersAtBothEnds) {
   EXPECT_NEAR(two[1], 0.5 * (1.7 * 1.7 + 1.3 * 1.3), 1e-6) << "a kink inside";
 }
 
+// As from row to row of a fine table: a few hundred values each, not the tens of thousands of one that does not settle.
+TEST(Quadrature, NarrowIntervalsSettleAtOnce) {
+  for (const double width : {1e-3, 1e-5, 1e-8}) {
+    int values = 0;
+    const auto integral = odpd::integrate<1>(
+        [&](double x) {
+          ++values;
+          return std::array{std::exp(x)};
+        },
+        0.5, 0.5 + width);
+    EXPECT_LT(values, 400) << width;
+    EXPECT_NEAR(integral[0], std::exp(0.5) * std::expm1(width), 1e-15);
+  }
+}
+
 TYPED_TEST(PairMomentsIn, OfDpdAreItsClosedForms) {
   constexpr int D = TypeParam::D;
   for (const double s : {0.0, 0.07, 0.5, 1.0, 2.0, 3.3})
