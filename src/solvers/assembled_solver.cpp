@@ -93,8 +93,11 @@ void AssembledSolver::hold_centre(std::span<double> x) const {
 Solver::Attempt AssembledSolver::attempt(std::span<const double> b, std::span<double> x,
                                          double tolerance) {
   if (!system_->holds_centre_of_mass()) {
-    const Attempt result = attempt_free(b, x, tolerance);
-    if (!system_->null_motions().empty()) system_->project(x);
+    if (system_->null_motions().empty()) return attempt_free(b, x, tolerance);
+    // What the residual has along a null motion falls on one spring: up to so many times as much.
+    const double spread = std::sqrt(static_cast<double>(system_->size()));
+    const Attempt result = attempt_free(b, x, std::max(tolerance / spread, 1e-14));
+    system_->project(x);
     return result;
   }
   const std::int64_t budget = iterations_left_;
