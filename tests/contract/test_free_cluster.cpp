@@ -37,9 +37,9 @@ struct FreeCluster : support::Fluid<D> {
   }
 
   /// Random forces along the edges.
-  std::vector<double> central_load() const {
+  std::vector<double> central_load(std::uint64_t seed) const {
     std::vector<double> f(static_cast<std::size_t>(resistance.size()));
-    const auto strength = support::random_numbers(this->network.i.size(), 4);
+    const auto strength = support::random_numbers(this->network.i.size(), seed);
     for (std::size_t k = 0; k < strength.size(); ++k)
       for (std::size_t c = 0; c < D; ++c) {
         f[static_cast<std::size_t>(this->network.i[k]) * D + c] +=
@@ -84,7 +84,7 @@ void expect_least_answer(const odpd::SolverOptions& options, Shape shape) {
   ASSERT_TRUE(cluster.resistance.translations_are_null());
   const auto solver = odpd::make_solver(options);
   solver->bind(cluster.resistance);
-  const std::vector<double> balanced = cluster.central_load();
+  const std::vector<double> balanced = cluster.central_load(4);
   // A bad guess full of null motions, and a load with a net force and torque beside the balanced one.
   const std::vector<double> noise = support::random_numbers(balanced.size(), 5);
   std::vector<double> x = noise, from_zero(balanced.size(), 0.0), unbalanced = balanced;
@@ -128,11 +128,22 @@ TEST(FreeCluster, EverySolverFindsTheAnswerOfLeastNorm) {
     }
 }
 
-// The residual along a null motion of many particles falls on one spring.
+// What the residual has along a null motion of many particles falls on one spring: without care the true residual misses the
+// tolerance and refinement gains no more, for some loads.
 TEST(FreeCluster, MayBeLarge) {
-  for (const std::string& name : odpd::available_solvers())
-    if (odpd::solver_traits(name).assembles)
-      expect_least_answer<2>({.name = name, .tolerance = 1e-5}, Shape::large);
+  const FreeCluster<2> cluster(Shape::large);
+  for (const std::string& name : odpd::available_solvers()) {
+    if (!odpd::solver_traits(name).assembles) continue;
+    const auto solver = odpd::make_solver({.name = name, .tolerance = 1e-5});
+    solver->bind(cluster.resistance);
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      const std::vector<double> load = cluster.central_load(seed);
+      std::vector<double> x(load.size(), 0.0);
+      const odpd::SolveReport report = solver->solve(load, x);
+      EXPECT_TRUE(report.converged) << name << ", load " << seed << ": " << report.failure;
+      EXPECT_LE(plain_residual(cluster, load, x), 1e-5 * (1.0 + 1e-6));
+    }
+  }
 }
 
 }  // namespace
