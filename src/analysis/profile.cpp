@@ -292,8 +292,8 @@ void Profile<D>::add_fit(Results& results, Chart& chart) const {
   const int above = scene_.settings().wall_at(profile_.axis, true);
   std::optional<WallSpeeds> walls;
   if (below >= 0 && above >= 0)
-    walls = WallSpeeds{scene_.known_velocity(below + 1, 0.0)[profile_.component],
-                       scene_.known_velocity(above + 1, 0.0)[profile_.component]};
+    walls = WallSpeeds{scene_.known_velocity(Group::wall(below), 0.0)[profile_.component],
+                       scene_.known_velocity(Group::wall(above), 0.0)[profile_.component]};
   if (linear) {
     add_linear(fitted, walls, results, chart);
   } else if (sine) {

@@ -41,7 +41,7 @@ void WallForce<D>::add_stage(const Particles<D>& particles, const Stage<D>& stag
   add_sliding_friction(stage.network, force);
   for (std::size_t i = 0; i < force.size(); ++i) {
     if (!particles.is_known(i) || particles.body_of(i) >= 0 || !own.owns(i)) continue;
-    const auto wall = index(particles.group[i] - 1);
+    const auto wall = index(particles.group[i].known_mover());
     for (int c = 0; c < D; ++c) sample[wall * D + index(c)] += weight * force[i][c] / area(wall);
   }
   // The potential pushes a particle off the wall it is behind, and the wall the other way.

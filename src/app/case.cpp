@@ -233,10 +233,10 @@ void read_start_h5md(SceneSettings<D>& scene) {
   std::vector<SpeciesWord> words;
   for (std::size_t k = 0; k < n; ++k) {
     // The walls of an odpd trajectory are placed by the case itself.
-    const std::int64_t group = k < frame.group.size() ? frame.group[k] : 0;
-    const auto walls = static_cast<std::int64_t>(scene.walls.size());
-    if (group > 0 && group <= walls) continue;
-    if (group > 0 && scene.bodies.empty())
+    const auto group = Group::of_code(k < frame.group.size() ? frame.group[k] : 0);
+    const auto walls = static_cast<std::int32_t>(scene.walls.size());
+    if (group.is_known() && group.body(walls) < 0) continue;
+    if (group.is_known() && scene.bodies.empty())
       throw ConfigError(
           fmt::format("{}: particle {} is of known velocity, of a wall or body that the case does "
                       "not have: start "
@@ -244,8 +244,8 @@ void read_start_h5md(SceneSettings<D>& scene) {
                       scene.start_file, k));
     Vec<D> r;
     for (std::size_t c = 0; c < D; ++c) r.x[c] = frame.position[k * D + c];
-    if (group != 0) {
-      const auto body = index(group < 0 ? -group - 1 : group - 1 - walls);
+    if (!group.is_free()) {
+      const auto body = index(group.body(walls));
       if (body >= n)
         throw ConfigError(fmt::format("{}: it has no body {}", scene.start_file, body));
       scene.start_bodies.resize(std::max(scene.start_bodies.size(), body + 1));

@@ -32,7 +32,7 @@ Frame scene_frame(const Scene<D>& scene, const Clock& clock) {
     const auto i = index(row);
     frame.id.push_back(particles.id[i]);
     frame.species.push_back(particles.species[i]);
-    frame.group.push_back(particles.group[i]);
+    frame.group.push_back(particles.group[i].code());
     for (std::size_t c = 0; c < D; ++c) {
       frame.position.push_back(particles.position[i].x[c]);
       frame.image.push_back(particles.image[i][c]);

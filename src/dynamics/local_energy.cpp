@@ -61,8 +61,7 @@ std::span<const typename LocalEnergy<D>::Partner> LocalEnergy<D>::partners_of(co
 // Not inside one body, where pairs stay as they are.
 template <int D>
 bool LocalEnergy<D>::meet(std::size_t i, std::size_t j) const {
-  const bool inside = particles_.group[i] != 0 && particles_.group[i] == particles_.group[j];
-  return j != i && !inside;
+  return j != i && !rigid_pair(particles_.group[i], particles_.group[j]);
 }
 
 // U_i(r); what i is to the densities there is added to the new ones with this sign.
@@ -91,8 +90,8 @@ double LocalEnergy<D>::change(std::span<const std::int32_t> moved, std::span<con
   double change = 0.0;
   for (std::size_t k = 0; k < moved_.size(); ++k) {
     const auto i = index(moved_[k]);
-    const std::int32_t group = particles_.group[index(moved_[0])];
-    if (k > 0 && (group == 0 || particles_.group[i] != group))
+    const Group group = particles_.group[index(moved_[0])];
+    if (k > 0 && (group.is_free() || particles_.group[i] != group))
       throw ConfigError("particles that move at once must be constituents of one body");
     const double there = at(i, to_[k], 1.0), here = at(i, particles_.position[i], -1.0);
     change += there - here;

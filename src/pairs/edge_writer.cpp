@@ -77,7 +77,7 @@ class Writer {
 
   void write() {
     const bool known = std::any_of(particles_.group.begin(), particles_.group.end(),
-                                   [](std::int32_t group) { return group != 0; });
+                                   [](Group group) { return !group.is_free(); });
     if (wanted_ == Pairs::rigid && !known) return network_.resize(0);
     // A list without skin has the edges themselves, but for a pair at the cutoff, to rounding.
     if (known || list_.skin() > 0.0 ||
@@ -123,10 +123,7 @@ class Writer {
       for (const std::int32_t q : some) pairs.add(positions_[p], positions_[index(q)]);
       pairs.close(kernel_, images_, box_);
       for (std::size_t l = 0; l < some.size(); ++l) {
-        // Two of known velocity, or inside a body, do not move.
-        const std::int32_t a = particles_.group[p];
-        const std::int32_t b = particles_.group[index(some[l])];
-        const bool moves = a > 0 ? b <= 0 : a == 0 || a != b;
+        const bool moves = !rigid_pair(particles_.group[p], particles_.group[index(some[l])]);
         *out = some[l];  // never beyond the row: as many were read
         if (moves == moving && pairs.square[l] < reach2_) ++out;
       }

@@ -36,6 +36,14 @@ struct Flat<std::array<std::int32_t, N>> {
   }
 };
 
+template <>
+struct Flat<Group> {
+  static constexpr std::size_t width = 1;
+  using Scalar = std::int64_t;
+  static Scalar at(Group group, std::size_t) { return group.code(); }
+  static void set(Group& group, std::size_t, Scalar s) { group = Group::of_code(s); }
+};
+
 template <class T>
 std::vector<typename Flat<T>::Scalar> flatten(const std::vector<T>& values) {
   std::vector<typename Flat<T>::Scalar> flat;

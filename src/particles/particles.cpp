@@ -43,19 +43,20 @@ std::vector<std::int32_t> Particles<D>::owned_by_identity() const {
 
 template <int D>
 std::int64_t Particles<D>::free_count() const {
-  const std::span<const std::int32_t> own = owned().part(std::span(group), 1);
-  return ranks_->sum(std::int64_t{std::count(own.begin(), own.end(), 0)});
+  const std::span<const Group> own = owned().part(std::span(group), 1);
+  return ranks_->sum(
+      std::int64_t{std::count_if(own.begin(), own.end(), [](Group g) { return g.is_free(); })});
 }
 
 template <int D>
 std::int64_t Particles<D>::moving_count() const {
-  const std::span<const std::int32_t> own = owned().part(std::span(group), 1);
+  const std::span<const Group> own = owned().part(std::span(group), 1);
   return ranks_->sum(
-      std::int64_t{std::count_if(own.begin(), own.end(), [](std::int32_t g) { return g <= 0; })});
+      std::int64_t{std::count_if(own.begin(), own.end(), [](Group g) { return !g.is_known(); })});
 }
 
 template <int D>
-void Particles<D>::add(const Vec<D>& r, std::int32_t species_index, std::int32_t group_index) {
+void Particles<D>::add(const Vec<D>& r, std::int32_t species_index, Group moved_by) {
   const std::size_t n = position.size();
   fields_.resize(n + 1);
   position[n] = r;
@@ -63,7 +64,7 @@ void Particles<D>::add(const Vec<D>& r, std::int32_t species_index, std::int32_t
   velocity[n] = Vec<D>{};
   id[n] = static_cast<std::int64_t>(n);
   species[n] = species_index;
-  group[n] = group_index;
+  group[n] = moved_by;
 }
 
 template <int D>
@@ -72,7 +73,7 @@ void Particles<D>::add_body(RigidBody<D> body, const Box<D>& box, std::int32_t s
   body.members.clear();
   for (std::size_t c = 0; c < body.frame.size(); ++c) {
     body.members.push_back(size());
-    add({}, species_index, body.known ? walls + k + 1 : -(k + 1));
+    add({}, species_index, body.known ? Group::known_body(k, walls) : Group::free_body(k));
     const auto at = position.size() - 1;
     place_constituent(body, body.pose, c, box, position[at], image[at]);
   }

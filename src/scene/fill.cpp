@@ -178,7 +178,7 @@ void place_walls(const SceneSettings<D>& settings, Particles<D>& particles) {
       for (Vec<D> site : grid_sites<D>(Vec<D>{}, settings.box.size, count)) {
         const double from_end = wall.thickness - layer.depth;
         site[wall.axis] = wall.high ? settings.box.size[wall.axis] - from_end : from_end;
-        particles.add(site, wall.species, static_cast<std::int32_t>(w) + 1);
+        particles.add(site, wall.species, Group::wall(static_cast<std::int32_t>(w)));
       }
     }
   }
@@ -228,7 +228,7 @@ void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<
   if (!given) species = assign_species(settings.species, settings.seed, fluid);
   if (settings.start == StartKind::file) append_molecule_species(settings, given, species);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    particles.add(points[k], species[k], 0);
+    particles.add(points[k], species[k]);
     settings.box.wrap(particles.position.back());
   }
 }

@@ -148,7 +148,7 @@ void place_molecules(const std::vector<MoleculeSettings<D>>& settings, const Box
         for (Vec<D>& r : beads) r += m.positions[index(n)];
       }
       for (std::size_t k = 0; k < beads.size(); ++k) {
-        particles.add(beads[k], m.species[k], 0);
+        particles.add(beads[k], m.species[k]);
         box.wrap(particles.position.back());
       }
     }

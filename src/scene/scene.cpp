@@ -152,8 +152,8 @@ void Scene<D>::add_driving_forces(const Particles<D>& particles, std::span<const
 }
 
 template <int D>
-Vec<D> Scene<D>::known_velocity(std::int32_t group, double) const {
-  return settings_.walls[index(group - 1)].velocity;
+Vec<D> Scene<D>::known_velocity(Group group, double) const {
+  return settings_.walls[index(group.known_mover())].velocity;
 }
 
 template <int D>

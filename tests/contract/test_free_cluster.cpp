@@ -29,7 +29,7 @@ struct FreeCluster : support::Fluid<D> {
     }
     for (odpd::Vec<D> r : unwrapped) {
       this->box.wrap(r);
-      this->particles.add(r, 0, 0);
+      this->particles.add(r, 0);
     }
     this->connect(odpd::DpdModel<D>(1, {odpd::DpdParameters{}}));
     resistance.rebuild(this->network, odpd::DofMap<D>(this->particles), this->particles,

@@ -22,7 +22,7 @@ TEST(ImplicitBonds, KeepTheOrder) {
       for (int y = 0; y < 10; ++y)
         particles.add({{0.5 * x + 0.1 + 0.1 * std::sin(3.0 * x + y),
                         0.5 * y + 0.1 + 0.1 * std::cos(2.0 * x - y)}},
-                      0, 0);
+                      0);
     for (Vec<2>& r : particles.position) box.wrap(r);
     const BondedModel<2> model(
         std::make_unique<DpdModel<2>>(
@@ -66,8 +66,7 @@ TYPED_TEST(BondedEnergyTest, OfATrialMoveIsThatOfTheEdges) {
   box.size = support::uniform_vec<D>(3.0);
   box.periodic.fill(true);
   Particles<D> particles;
-  for (const Vec<D>& r : support::random_points<D>(Vec<D>{}, box.size, 40, 5))
-    particles.add(r, 0, 0);
+  for (const Vec<D>& r : support::random_points<D>(Vec<D>{}, box.size, 40, 5)) particles.add(r, 0);
   particles.reorder(support::random_order(40, 3));
   // 3 and 4 far apart, 5 and 6 close: beyond the cutoff and within.
   const auto index = particles.index_of_id();

@@ -191,8 +191,7 @@ struct Strangers {
       : nothing(constants),
         dynamics(box, scattered(particles), model, nothing, make_solver({.name = "pcg"}), {}) {}
   static Particles<2>& scattered(Particles<2>& particles) {
-    for (int k = 0; k < 3000; ++k)
-      particles.add({{7.0 * (k % 57) + 1.0, 7.0 * (k / 57) + 1.0}}, 0, 0);
+    for (int k = 0; k < 3000; ++k) particles.add({{7.0 * (k % 57) + 1.0, 7.0 * (k / 57) + 1.0}}, 0);
     return particles;
   }
   Box<2> box{{{400.0, 400.0}}, {true, true}};

@@ -36,7 +36,7 @@ class Trap : public NoSurroundings<D> {
     for (std::size_t i = 0; i < out.size(); ++i)
       if (particles.is_free(i)) out[i] += force;
   }
-  Vec<D> known_velocity(std::int32_t, double) const override { return wall_velocity; }
+  Vec<D> known_velocity(odpd::Group, double) const override { return wall_velocity; }
 };
 
 // `count` particles at random places of a box with edges `edge`, bounded along the last direction.
@@ -49,7 +49,7 @@ struct Toy {
     box.periodic.back() = false;
     for (const Vec<D>& r : support::random_points<D>(
              Vec<D>{}, box.size, static_cast<std::size_t>(count), settings.seed))
-      particles.add(r, 0, 0);
+      particles.add(r, 0);
     remake(settings);
   }
   void remake(const DynamicsSettings& settings) {
@@ -261,7 +261,7 @@ TYPED_TEST(MonteCarloTest, TheRecordHoldsTheSweepsStartAtRest) {
 TYPED_TEST(MonteCarloTest, KnownParticlesStay) {
   constexpr int D = TypeParam::D;
   Toy<D> toy(4.0, 60);
-  for (std::size_t i = 0; i < 20; ++i) toy.particles.group[i] = 1;
+  for (std::size_t i = 0; i < 20; ++i) toy.particles.group[i] = odpd::Group::wall(0);
   const std::vector<Vec<D>> start = toy.particles.position;
   MonteCarlo<D> sampler;
   toy.run(sampler, 1, 50);
@@ -272,7 +272,7 @@ TYPED_TEST(MonteCarloTest, KnownParticlesStay) {
 TEST(MonteCarlo, RefusesWhatHasNoEquilibrium) {
   const auto check = [](const auto& change, double kT) {
     Toy<2> toy(4.0, 20);
-    toy.particles.group[0] = 1;
+    toy.particles.group[0] = odpd::Group::wall(0);
     toy.trap = Trap<2>({.kT = kT});
     change(toy.trap);
     toy.remake({});

@@ -45,7 +45,7 @@ struct ShearedToy {
     for (Vec<D> r : support::random_points<D>(Vec<D>{}, box.size, count, 9)) {
       if (s.shear) r[s.shear->gradient] += s.cut;
       box.wrap(r);
-      particles.add(r, 0, 0);
+      particles.add(r, 0);
     }
     std::vector<Bond> bonds;
     std::vector<SiteFrame<D>> frames;

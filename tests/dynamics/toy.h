@@ -12,7 +12,7 @@ namespace odpd {
 class MovingRow : public NoSurroundings<2> {
  public:
   using NoSurroundings<2>::NoSurroundings;
-  Vec<2> known_velocity(std::int32_t, double) const override { return {{0.5, 0.0}}; }
+  Vec<2> known_velocity(odpd::Group, double) const override { return {{0.5, 0.0}}; }
 };
 
 struct ToySettings {
@@ -30,10 +30,10 @@ struct Toy {
     for (int x = 0; x < s.side; ++x)
       for (int y = 0; y < s.side; ++y)
         particles.add(
-            {{0.5 * x + 0.1 * std::sin(3.0 * x + y), 0.5 * y + 0.1 * std::cos(2.0 * x - y)}}, 0, 0);
+            {{0.5 * x + 0.1 * std::sin(3.0 * x + y), 0.5 * y + 0.1 * std::cos(2.0 * x - y)}}, 0);
     for (Vec<2>& r : particles.position) box.wrap(r);
     if (s.walled)
-      for (int x = 0; x < s.side; ++x) particles.add({{0.5 * x, 2.5}}, 0, 1);
+      for (int x = 0; x < s.side; ++x) particles.add({{0.5 * x, 2.5}}, 0, odpd::Group::wall(0));
     dynamics = std::make_unique<Dynamics<2>>(box, particles, model, row, make_solver(s.solver),
                                              s.dynamics);
   }

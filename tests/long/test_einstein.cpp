@@ -75,7 +75,7 @@ Paths follow(std::uint64_t window, const Vec<2>& force, double torque, double dt
     particles.add_body(body, box, 1);
   }
   for (const Vec<2>& r : support::random_points<2>(Vec<2>{}, box.size, 1600, 2))
-    particles.add(r, 0, 1);
+    particles.add(r, 0, odpd::Group::wall(0));
   particles.walls = 1;
   const DpdParameters felt{.a = 0.0, .gamma = 4.5, .s = 0.5};
   const DpdModel<2> model(2, {felt, felt, felt, DpdParameters{.a = 0.0, .gamma = 0.0}});

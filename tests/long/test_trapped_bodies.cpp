@@ -32,13 +32,12 @@ BlockAverage sample(const std::string& scheme, double dt, std::int64_t steps) {
     particles.add_body(body, box, 0);
   }
   const auto post = static_cast<std::int64_t>(particles.size());
-  particles.add(middle, 0, 1);
+  particles.add(middle, 0, odpd::Group::wall(0));
   particles.walls = 1;
   std::vector<Bond> bonds;
   for (std::int64_t id = 0; id < post; ++id)
     bonds.push_back({id, post, {.H = 8.0, .r_0 = 0.0, .exclude = BondExclusion::all}});
-  for (const Vec<2>& r : support::random_points<2>(Vec<2>{}, box.size, 100, 3))
-    particles.add(r, 0, 0);
+  for (const Vec<2>& r : support::random_points<2>(Vec<2>{}, box.size, 100, 3)) particles.add(r, 0);
   const BondedModel<2> model(std::make_unique<DpdModel<2>>(
                                  1, std::vector{DpdParameters{.a = 18.5, .gamma = 4.5, .s = 0.5}}),
                              bonds);

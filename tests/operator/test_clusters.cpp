@@ -23,8 +23,8 @@ void build(int drops, int held, const DpdParameters& p) {
     const auto low = support::uniform_vec<D>(1.0 + 3.6 * k);
     const auto high = support::uniform_vec<D>(2.5 + 3.6 * k);
     for (const auto& r : support::random_points<D>(low, high, D == 2 ? 25 : 60, 1))
-      fluid.particles.add(r, 0, 0);
-    if (k < held) fluid.particles.add(0.5 * (low + high), 0, 1);
+      fluid.particles.add(r, 0);
+    if (k < held) fluid.particles.add(0.5 * (low + high), 0, odpd::Group::wall(0));
   }
   fluid.connect(DpdModel<D>(1, {p}));
   Resistance<D> resistance(fluid.box);

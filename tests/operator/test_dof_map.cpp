@@ -16,7 +16,7 @@ TYPED_TEST_SUITE(DofMapTest, support::Dimensions);
 // Free, known, free, known, known, free.
 template <int D>
 void fill(odpd::Particles<D>& particles) {
-  for (const std::int32_t group : {0, 1, 0, 2, 1, 0}) particles.add(Vec<D>{}, 0, group);
+  for (const int code : {0, 1, 0, 2, 1, 0}) particles.add(Vec<D>{}, 0, odpd::Group::of_code(code));
 }
 
 TYPED_TEST(DofMapTest, NodesAreTheFreeParticlesInOrder) {

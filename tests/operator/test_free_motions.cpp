@@ -23,7 +23,7 @@ template <int D>
 void add_points(Fluid<D>& fluid, const Vec<D>& low, const Vec<D>& high, std::size_t count) {
   for (Vec<D> r : support::random_points<D>(low, high, count, 2)) {
     fluid.box.wrap(r);
-    fluid.particles.add(r, 0, 0);
+    fluid.particles.add(r, 0);
   }
 }
 
@@ -92,7 +92,7 @@ TEST(FreeMotions, AStripAroundTheBoxDoesNotTurn) {
     for (const double aside : {0.0, 0.3}) {
       const double x = 0.1 * k;
       Vec<2> r{{x, 3.0 + 1.2 * std::sin(2.0 * M_PI * x / edge_of_box) + aside}};
-      fluid.particles.add(r, 0, 0);
+      fluid.particles.add(r, 0);
     }
   EXPECT_EQ(count<2>(fluid), 0U);
 }
@@ -123,7 +123,7 @@ TYPED_TEST(FreeMotionsTest, KnownParticlesTakeThemAway) {
       r[0] += known == 1 ? 0.4 : 0.0;
       r[1] += known == 2 ? -0.4 : 0.0;
       fluid.box.wrap(r);
-      fluid.particles.add(r, 0, 1);
+      fluid.particles.add(r, 0, odpd::Group::wall(0));
       EXPECT_EQ(count<D>(fluid), left[known]) << known + 1 << " known, middle " << middle;
     }
   }

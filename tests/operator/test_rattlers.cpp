@@ -22,12 +22,13 @@ struct Lonely {
   Lonely() {
     const auto drop = support::random_points<D>(support::uniform_vec<D>(1.0),
                                                 support::uniform_vec<D>(2.5), D == 2 ? 25 : 60, 1);
-    for (const auto& r : drop) fluid.particles.add(r, 0, 0);
-    fluid.particles.add(support::uniform_vec<D>(1.75), 0, 1);
+    for (const auto& r : drop) fluid.particles.add(r, 0);
+    fluid.particles.add(support::uniform_vec<D>(1.75), 0, odpd::Group::wall(0));
   }
   /// A particle at (8, 8, 8) + offset; known ones do not need neighbours.
   std::int64_t add(const Vec<D>& offset, bool known = false) {
-    fluid.particles.add(support::uniform_vec<D>(8.0) + offset, 0, known ? 1 : 0);
+    fluid.particles.add(support::uniform_vec<D>(8.0) + offset, 0,
+                        known ? odpd::Group::wall(0) : odpd::Group());
     return fluid.particles.id.back();
   }
   void rebuild(const DpdParameters& p, double shift) {

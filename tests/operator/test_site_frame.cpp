@@ -44,9 +44,9 @@ struct Tied {
     w[0] = 1.1;
     turned.advance(w);
     const auto displaced = support::random_vectors<D>(n, 6);
-    fluid.particles.add(support::uniform_vec<D>(2.0), 0, 0);
+    fluid.particles.add(support::uniform_vec<D>(2.0), 0);
     for (std::size_t k = 0; k < n; ++k) {
-      fluid.particles.add(turned.turn(sites[k]) + off * displaced[k], 0, 0);
+      fluid.particles.add(turned.turn(sites[k]) + off * displaced[k], 0);
       fluid.box.wrap(fluid.particles.position.back());
     }
     fluid.particles.reorder(support::random_order(n + 1, 3));

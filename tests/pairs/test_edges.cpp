@@ -188,7 +188,7 @@ TYPED_TEST(EdgesTest, AnExactOverlapHasAFixedFiniteDirection) {
   EXPECT_NE(first, odpd::overlap_direction<D>(3, 9));
 
   Fluid<D> fluid(4.0, true);
-  for (int k = 0; k < 4; ++k) fluid.particles.add(support::uniform_vec<D>(1.0), 0, 0);
+  for (int k = 0; k < 4; ++k) fluid.particles.add(support::uniform_vec<D>(1.0), 0);
   fluid.particles.position[3][0] = 1.0 + 1e-170;  // the square of this distance is zero
   const DpdModel<D> model(1, {DpdParameters{}});
   fluid.connect(model);
@@ -212,8 +212,8 @@ TYPED_TEST(EdgesTest, AnExactOverlapHasAFixedFiniteDirection) {
 TYPED_TEST(EdgesTest, FarFrictionJoinsParticlesBeyondTheCutoff) {
   constexpr int D = TypeParam::D;
   Fluid<D> fluid(6.0, true);
-  fluid.particles.add(support::uniform_vec<D>(1.0), 0, 0);
-  fluid.particles.add(support::uniform_vec<D>(1.0), 0, 0);
+  fluid.particles.add(support::uniform_vec<D>(1.0), 0);
+  fluid.particles.add(support::uniform_vec<D>(1.0), 0);
   fluid.particles.position[1][0] = 2.5;
   DpdParameters p;
   fluid.connect(DpdModel<D>(1, {p}));

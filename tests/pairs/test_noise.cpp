@@ -95,8 +95,8 @@ TYPED_TEST(NoiseTest, CovarianceOfAnEdge) {
   constexpr int n = 20000;
   constexpr double dt = 0.02;
   Fluid<D> fluid(4.0, true);
-  fluid.particles.add(support::uniform_vec<D>(1.0), 0, 0);
-  fluid.particles.add(support::uniform_vec<D>(1.2), 0, 0);
+  fluid.particles.add(support::uniform_vec<D>(1.0), 0);
+  fluid.particles.add(support::uniform_vec<D>(1.2), 0);
   fluid.particles.position[1][0] = 1.4;
   DpdParameters p = transverse();
   p.kT = 1.3;

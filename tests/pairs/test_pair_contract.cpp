@@ -162,7 +162,8 @@ TYPED_TEST(PairContract, EdgesAreWhatItSaysOfPairs) {
     box.periodic.fill(true);
     odpd::Particles<D> particles;
     for (const auto& r : support::random_points<D>({}, box.size, 300, 8))
-      particles.add(r, particles.size() % 3 == 0 ? 1 : 0, particles.size() % 7 == 0 ? 1 : 0);
+      particles.add(r, particles.size() % 3 == 0 ? 1 : 0,
+                    particles.size() % 7 == 0 ? odpd::Group::wall(0) : odpd::Group());
     odpd::PairList<D> list(box, model.cutoff(), 0.2);
     list.update(particles.position);
     PairNetwork<D> network, on_threads;

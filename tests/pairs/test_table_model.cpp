@@ -94,9 +94,9 @@ TEST(TableModel, OrNoPairMayBeThere) {
   EXPECT_TRUE(m.drag.has_value());
   EXPECT_NEAR(m.force, 3.0, 1e-4);
   support::Fluid<2> fluid(4.0, true);
-  fluid.particles.add({1.0, 1.0}, 0, 0);
-  fluid.particles.add({2.0, 1.0}, 0, 0);
-  fluid.particles.add({1.5, 1.001}, 0, 0);
+  fluid.particles.add({1.0, 1.0}, 0);
+  fluid.particles.add({2.0, 1.0}, 0);
+  fluid.particles.add({1.5, 1.001}, 0);
   fluid.connect(model);
   EXPECT_NO_THROW(model.refuse_unknown(fluid.network, fluid.particles));
   fluid.particles.position[2] = {1.6, 1.0};
@@ -114,7 +114,7 @@ TEST(TableModel, ABondMayTakeAPairOut) {
   const auto table = std::make_shared<const TableModel<2>>(model_of(steep()));
   const odpd::BondedModel<2> model(table, {bond});
   support::Fluid<2> fluid(4.0, true);
-  for (const double x : {1.0, 2.0, 1.6}) fluid.particles.add({x, 1.0}, 0, 0);
+  for (const double x : {1.0, 2.0, 1.6}) fluid.particles.add({x, 1.0}, 0);
   fluid.connect(model);
   EXPECT_NO_THROW(model.refuse_unknown(fluid.network, fluid.particles));
   EXPECT_TRUE(model.excludes(1, 2, fluid.particles) && model.excludes(2, 1, fluid.particles));

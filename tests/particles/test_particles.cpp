@@ -21,7 +21,8 @@ template <int D>
 void fill(Particles<D>& particles, std::size_t count) {
   for (std::size_t k = 0; k < count; ++k) {
     particles.add(support::uniform_vec<D>(0.1 * static_cast<double>(k) + 1e-17),
-                  static_cast<std::int32_t>(k % 3), static_cast<std::int32_t>(k % 4));
+                  static_cast<std::int32_t>(k % 3),
+                  odpd::Group::of_code(static_cast<std::int64_t>(k % 4)));
     particles.velocity[k] = support::uniform_vec<D>(1.0 / (1.0 + static_cast<double>(k)));
     particles.image[k].fill(static_cast<std::int32_t>(k) - 5);
   }
@@ -34,7 +35,7 @@ void expect_particle(const Particles<D>& p, std::size_t i, std::size_t k) {
   EXPECT_EQ(p.velocity[i], support::uniform_vec<D>(1.0 / (1.0 + static_cast<double>(k))));
   for (const std::int32_t n : p.image[i]) EXPECT_EQ(n, static_cast<std::int32_t>(k) - 5);
   EXPECT_EQ(p.species[i], static_cast<std::int32_t>(k % 3));
-  EXPECT_EQ(p.group[i], static_cast<std::int32_t>(k % 4));
+  EXPECT_EQ(p.group[i].code(), static_cast<std::int32_t>(k % 4));
 }
 
 template <class T>
@@ -45,8 +46,8 @@ TYPED_TEST(ParticlesTest, NewOnesAreNumberedAndAtRest) {
   constexpr int D = TypeParam::D;
   Particles<D> particles;
   EXPECT_EQ(particles.size(), 0);
-  particles.add(support::uniform_vec<D>(2.0), 1, 0);
-  particles.add(support::uniform_vec<D>(3.0), 0, 2);
+  particles.add(support::uniform_vec<D>(2.0), 1);
+  particles.add(support::uniform_vec<D>(3.0), 0, odpd::Group::wall(1));
   EXPECT_EQ(particles.size(), 2);
   EXPECT_EQ(particles.id, (std::vector<std::int64_t>{0, 1}));
   EXPECT_EQ(particles.velocity[1], Vec<D>{});

@@ -81,7 +81,7 @@ TYPED_TEST(RigidBodyTest, ArmsAndMotionsAreFoundAcrossTheBoundary) {
   box.periodic.fill(true);
   Particles<D> particles;
   particles.walls = 1;
-  particles.add({}, 0, 1);
+  particles.add({}, 0, odpd::Group::wall(0));
   RigidBody<D> body = some_body<D>(4);
   body.pose.centre = support::uniform_vec<D>(3.9);
   body.pose.orientation.advance(some_angle<D>(1, 1.0));

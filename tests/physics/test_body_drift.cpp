@@ -53,10 +53,10 @@ double body_population(const std::string& scheme, std::int64_t steps) {
     particles.add_body(body, box, 0);
   }
   for (const Vec<2>& c : centres) {
-    particles.add(c, 0, 1);
+    particles.add(c, 0, odpd::Group::wall(0));
     for (int k = 0; k < 8; ++k) {
       const double angle = k * std::numbers::pi / 4.0;
-      particles.add(c + 1.2 * Vec<2>{{std::cos(angle), std::sin(angle)}}, 0, 1);
+      particles.add(c + 1.2 * Vec<2>{{std::cos(angle), std::sin(angle)}}, 0, odpd::Group::wall(0));
     }
   }
   particles.walls = 1;

@@ -90,15 +90,15 @@ TiedAverages measured_on_sites(const TiedRun& run) {
         bonds.push_back({particles.size() + i,
                          particles.size() + j,
                          {.law = BondLaw::sites, .H = frames.back().H}});
-    for (const Vec<D>& b : frames.back().sites) particles.add(c + b, 0, 0);
-    particles.add(c, 0, 1);
+    for (const Vec<D>& b : frames.back().sites) particles.add(c + b, 0);
+    particles.add(c, 0, odpd::Group::wall(0));
     for (int k = 0; k < D; ++k)
       for (const double out : {-1.2, 1.2}) {
         Vec<D> r = c;
         r[k] += out;
-        particles.add(r, 0, 1);
+        particles.add(r, 0, odpd::Group::wall(0));
         r[(k + 1) % D] += out;
-        particles.add(r, 0, 1);
+        particles.add(r, 0, odpd::Group::wall(0));
       }
   }
   const BondedModel<D> model(

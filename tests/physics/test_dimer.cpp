@@ -69,13 +69,14 @@ Length measured_length(const BondParameters& p, const DimerRun& run) {
       const Vec<2> c{{(x + 0.5) * dimer_spacing, (y + 0.5) * dimer_spacing}};
       const auto id = static_cast<std::int64_t>(particles.size());
       bonds.push_back({id, id + 1, p});
-      particles.add(c, 0, 0);
-      particles.add(c + Vec<2>{{p.r_0 + 0.01, 0.0}}, 0, 0);
+      particles.add(c, 0);
+      particles.add(c + Vec<2>{{p.r_0 + 0.01, 0.0}}, 0);
       for (int k = 0; k < 8; ++k) {
         const double angle = k * std::numbers::pi / 4.0;
-        particles.add(c + 1.2 * Vec<2>{{std::cos(angle), std::sin(angle)}}, 0, 1);
+        particles.add(c + 1.2 * Vec<2>{{std::cos(angle), std::sin(angle)}}, 0,
+                      odpd::Group::wall(0));
       }
-      particles.add(c, 0, 1);
+      particles.add(c, 0, odpd::Group::wall(0));
     }
   auto pairs = std::make_unique<DpdModel<2>>(
       1, std::vector{DpdParameters{.a = 0.0, .gamma = 4.5, .s = 0.5, .cutoff = 3.0}});

@@ -54,11 +54,11 @@ class Traps : public NoSurroundings<2> {
 double population(const std::string& scheme, std::int64_t steps, double mass = 0.0) {
   Particles<2> particles;
   for_each_centre([&](const Vec<2>& c) {
-    particles.add(c + Vec<2>{{0.3, 0.2}}, 0, 0);
-    particles.add(c, 0, 1);        // strong friction close by
-    for (int k = 0; k < 8; ++k) {  // a ring that holds it in every direction
+    particles.add(c + Vec<2>{{0.3, 0.2}}, 0);
+    particles.add(c, 0, odpd::Group::wall(0));  // strong friction close by
+    for (int k = 0; k < 8; ++k) {               // a ring that holds it in every direction
       const double angle = k * std::numbers::pi / 4.0;
-      particles.add(c + 1.2 * Vec<2>{{std::cos(angle), std::sin(angle)}}, 0, 1);
+      particles.add(c + 1.2 * Vec<2>{{std::cos(angle), std::sin(angle)}}, 0, odpd::Group::wall(0));
     }
   });
   const DpdModel<2> model = friction_only(3.0);
@@ -107,13 +107,13 @@ enum class Noise { stored, reprojected };
 // unknown. Returns the fraction of the time within 0.3 of angle 0, where a frozen particle is close, relative to exact.
 double far_from_the_friction_point(int stages, Noise noise, std::int64_t steps) {
   Particles<2> particles;
-  for_each_centre([&](const Vec<2>& c) { particles.add(c + Vec<2>{{0.0, arm}}, 0, 0); });
+  for_each_centre([&](const Vec<2>& c) { particles.add(c + Vec<2>{{0.0, arm}}, 0); });
   const std::size_t rotors = particles.position.size();
   for_each_centre([&](const Vec<2>& c) {
-    particles.add(c + Vec<2>{{1.1 * arm, 0.05}}, 0, 1);
+    particles.add(c + Vec<2>{{1.1 * arm, 0.05}}, 0, odpd::Group::wall(0));
     for (int k = 0; k < 6; ++k) {  // some friction all the way round
       const double angle = (k + 0.5) * std::numbers::pi / 3.0;
-      particles.add(c + 2.2 * Vec<2>{{std::cos(angle), std::sin(angle)}}, 0, 1);
+      particles.add(c + 2.2 * Vec<2>{{std::cos(angle), std::sin(angle)}}, 0, odpd::Group::wall(0));
     }
   });
   const std::vector<Vec<2>> tips(particles.position.begin(),

@@ -14,6 +14,7 @@ using cases::channel;
 using cases::periodic;
 using cases::settings;
 using odpd::ConfigError;
+using odpd::Group;
 using odpd::Scene;
 using odpd::SceneSettings;
 using odpd::StartKind;
@@ -44,29 +45,30 @@ double closest_pair(const Scene<D>& scene) {
 }
 
 template <int D>
-std::int64_t count_group(const Scene<D>& scene, std::int32_t group) {
+std::int64_t count_group(const Scene<D>& scene, Group group) {
   const auto& groups = scene.particles().group;
   return std::count(groups.begin(), groups.end(), group);
 }
 
 TEST(Fill, AChannelHasItsWallsAndItsFluid) {
   const Scene<2> scene(settings<2>(channel));
-  EXPECT_EQ(count_group(scene, 0), 400);
-  EXPECT_EQ(count_group(scene, 1), 70);
-  EXPECT_EQ(count_group(scene, 2), 70);
+  EXPECT_EQ(count_group(scene, Group()), 400);
+  EXPECT_EQ(count_group(scene, Group::wall(0)), 70);
+  EXPECT_EQ(count_group(scene, Group::wall(1)), 70);
   EXPECT_EQ(scene.fluid_volume(), 100.0);
   EXPECT_EQ(scene.fluid_low(), (Vec<2>{{0.0, 1.0}}));
   EXPECT_EQ(scene.fluid_high(), (Vec<2>{{10.0, 11.0}}));
-  EXPECT_EQ(scene.known_velocity(1, 0.0)[0], 0.0);
-  EXPECT_EQ(scene.known_velocity(2, 0.0)[0], 1.0);
+  EXPECT_EQ(scene.known_velocity(Group::wall(0), 0.0)[0], 0.0);
+  EXPECT_EQ(scene.known_velocity(Group::wall(1), 0.0)[0], 1.0);
   std::map<std::pair<std::int32_t, double>, std::vector<double>> layers;
   const auto& p = scene.particles();
   for (std::size_t i = 0; i < p.position.size(); ++i) {
-    if (!p.is_free(i)) layers[{p.group[i], p.position[i][1]}].push_back(p.position[i][0]);
+    if (!p.is_free(i))
+      layers[{p.group[i].known_mover(), p.position[i][1]}].push_back(p.position[i][0]);
   }
   ASSERT_EQ(layers.size(), 4u);
   for (const auto& [where, count] :
-       {std::pair{std::pair{1, 1.0}, 50}, {{1, 0.5}, 20}, {{2, 11.0}, 50}, {{2, 11.5}, 20}}) {
+       {std::pair{std::pair{0, 1.0}, 50}, {{0, 0.5}, 20}, {{1, 11.0}, 50}, {{1, 11.5}, 20}}) {
     std::vector<double> x = layers[where];
     ASSERT_EQ(x.size(), static_cast<std::size_t>(count)) << "at height " << where.second;
     std::sort(x.begin(), x.end());
@@ -87,8 +89,8 @@ TEST(Fill, A3DLayerIsAGridOfTheSpacing) {
     s.walls.push_back(wall);
   }
   const Scene<3> scene(s);
-  EXPECT_EQ(count_group(scene, 1), 6 * 8);  // 3/0.49 and 4/0.49, rounded
-  EXPECT_EQ(count_group(scene, 0), 108);    // 3 per volume in 3 x 4 x (5 - 2)
+  EXPECT_EQ(count_group(scene, Group::wall(0)), 6 * 8);  // 3/0.49 and 4/0.49, rounded
+  EXPECT_EQ(count_group(scene, Group()), 108);           // 3 per volume in 3 x 4 x (5 - 2)
   EXPECT_EQ(scene.particles().position[0][2], 0.75);
   EXPECT_EQ(scene.particles().position[50][2], 4.25);
 }
@@ -122,7 +124,7 @@ TEST(Fill, LatticesHaveExactlyTheCountAsked) {
     s.relax_sweeps = 0;
     s.count = count;
     const Scene<2> scene(s);
-    EXPECT_EQ(count_group(scene, 0), count);
+    EXPECT_EQ(count_group(scene, Group()), count);
     std::set<std::pair<double, double>> sites;
     for (std::size_t i = 140; i < scene.particles().position.size(); ++i) {
       const Vec<2>& r = scene.particles().position[i];
@@ -186,7 +188,7 @@ TEST(Fill, StartPositionsMustLieInTheBox) {
   s.start_positions = {{{3.0, 5.0}},   {{-1.0, 1.0}}, {{25.0, 11.0}}, {{1.0, 0.97}},
                        {{2.0, 11.03}}, {{3.0, 0.0}},  {{4.0, 12.0}}};
   const Scene<2> scene(s);
-  EXPECT_EQ(count_group(scene, 0), 7);
+  EXPECT_EQ(count_group(scene, Group()), 7);
   EXPECT_EQ(scene.particles().position[141], (Vec<2>{{9.0, 1.0}})) << "wrapped where periodic";
   EXPECT_EQ(scene.particles().position[142], (Vec<2>{{5.0, 11.0}}));
   EXPECT_EQ(scene.particles().position[143], (Vec<2>{{1.0, 0.97}})) << "where it was";

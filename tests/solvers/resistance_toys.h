@@ -21,7 +21,7 @@ struct RandomFluid {
     const double length = fluid.box.size[0];
     for (const auto& r : support::random_points<D>({}, fluid.box.size, count, seed)) {
       const bool at_rest = ends == Ends::walls && (r[0] < 1.0 || r[0] > length - 1.0);
-      fluid.particles.add(r, 0, at_rest ? 1 : 0);
+      fluid.particles.add(r, 0, at_rest ? odpd::Group::wall(0) : odpd::Group());
     }
     resistance = odpd::Resistance<D>(fluid.box);
     odpd::DpdParameters p;

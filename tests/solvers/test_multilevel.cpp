@@ -182,7 +182,7 @@ TYPED_TEST(MultilevelCg, SurvivesAnEmptyBox) {
     box.periodic.fill(true);
     support::Fluid<D> fluid(40.0, true);
     for (const auto& r : support::random_points<D>({}, support::uniform_vec<D>(2.0), count, count))
-      fluid.particles.add(r, 0, 0);
+      fluid.particles.add(r, 0);
     fluid.connect(odpd::DpdModel<D>(1, {odpd::DpdParameters{}}));
     for (const double shift : {1e-6, 1e-2, 10.0}) {
       odpd::Resistance<D> resistance(box);
@@ -226,7 +226,7 @@ TYPED_TEST(MultilevelCg, LeavesToDoublePrecisionWhatSinglePrecisionCannotDo) {
   constexpr int D = TypeParam::D;
   support::Fluid<D> fluid(40.0, true);
   for (const auto& r : support::random_points<D>({}, support::uniform_vec<D>(2.0), 60, 60))
-    fluid.particles.add(r, 0, 0);
+    fluid.particles.add(r, 0);
   fluid.connect(odpd::DpdModel<D>(1, {odpd::DpdParameters{}}));
   odpd::Resistance<D> resistance(fluid.box);
   resistance.rebuild(fluid.network, odpd::DofMap<D>(fluid.particles), fluid.particles,

@@ -97,7 +97,9 @@ struct Crowd {
     box.periodic.fill(true);
     particles.walls = only_free ? 0 : 2;
     for (const odpd::Vec<D>& r : random_points<D>({}, box.size, count, 5)) {
-      const std::int32_t group = only_free || r[0] > 0.8 ? 0 : r[1] < 0.5 * edge ? 1 : 2;
+      const auto group = odpd::Group::of_code(only_free || r[0] > 0.8 ? 0
+                                              : r[1] < 0.5 * edge     ? 1
+                                                                      : 2);
       particles.add(r, particles.size() % 2 == 0 ? 0 : 1, group);
     }
     for (const bool known : {false, true}) {

@@ -28,7 +28,7 @@ struct Fluid {
         double known_below = 0.0)
       : Fluid(length, periodic) {
     for (const auto& r : random_points<D>(odpd::Vec<D>{}, box.size, count, seed)) {
-      particles.add(r, 0, r[0] < known_below ? 1 : 0);
+      particles.add(r, 0, r[0] < known_below ? odpd::Group::wall(0) : odpd::Group());
     }
   }
   void connect(const odpd::PairModel<D>& model, double skin = 0.3) {

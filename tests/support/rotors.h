@@ -77,10 +77,11 @@ inline Fraction rotors_turned_away(const std::string& scheme, std::int64_t steps
     particles.add_body(rotor, box, 0);
   }
   for (const Vec<2>& c : centres) {
-    for (int k = 0; k < 8; ++k) particles.add(c + Vec<2>{{1.1 + 0.01 * k, 0.05}}, 0, 1);
+    for (int k = 0; k < 8; ++k)
+      particles.add(c + Vec<2>{{1.1 + 0.01 * k, 0.05}}, 0, odpd::Group::wall(0));
     for (int k = 0; k < 6; ++k) {  // some friction all the way round
       const double angle = (k + 0.5) * std::numbers::pi / 3.0;
-      particles.add(c + 1.7 * Vec<2>{{std::cos(angle), std::sin(angle)}}, 0, 1);
+      particles.add(c + 1.7 * Vec<2>{{std::cos(angle), std::sin(angle)}}, 0, odpd::Group::wall(0));
     }
   }
   particles.walls = 1;

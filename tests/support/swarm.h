@@ -34,7 +34,7 @@ struct Swarm {
       std::int64_t rest = n;
       for (int c = 0; c < D; ++c, rest /= side) r[c] += 0.7 * static_cast<double>(rest % side);
       box.wrap(r);
-      particles.add(r, 0, 0);
+      particles.add(r, 0);
     }
     DynamicsSettings settings;
     settings.reorder_every = 7;

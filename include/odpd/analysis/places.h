@@ -23,7 +23,7 @@ class Places {
 
  private:
   Vec<D> arm(std::size_t i) const {
-    return stage_.arms.empty() || particles_.group[i] >= 0 ? Vec<D>{} : stage_.arms[i];
+    return stage_.arms.empty() || !particles_.group[i].in_free_body() ? Vec<D>{} : stage_.arms[i];
   }
 
   const Particles<D>& particles_;

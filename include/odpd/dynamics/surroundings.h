@@ -38,7 +38,7 @@ class Surroundings {
   /// Those forces depend on position, so they have no linear potential.
   virtual bool driving_varies() const { return false; }
   /// Velocity at time t of wall `group` >= 1.
-  virtual Vec<D> known_velocity(std::int32_t group, double t) const = 0;
+  virtual Vec<D> known_velocity(Group group, double t) const = 0;
   /// Motion at time t of a body that has a known one.
   virtual RigidMotion<D> known_motion(std::size_t /*body*/, double /*t*/) const { return {}; }
   /// Force and torque at time t on a body, besides those on its constituents.
@@ -63,7 +63,7 @@ class NoSurroundings : public Surroundings<D> {
   }
   void add_driving_forces(const Particles<D>&, std::span<const Vec<D>>, double,
                           std::vector<Vec<D>>&) const override {}
-  Vec<D> known_velocity(std::int32_t, double) const override { return {}; }
+  Vec<D> known_velocity(Group, double) const override { return {}; }
   bool confine(Vec<D>&) const override { return false; }
 
  private:

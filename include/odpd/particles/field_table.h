@@ -9,6 +9,7 @@
 #include "odpd/core/archive.h"
 #include "odpd/core/index.h"
 #include "odpd/core/vec.h"
+#include "odpd/particles/group.h"
 
 namespace odpd {
 
@@ -16,8 +17,9 @@ template <int D>
 class FieldTable {
  public:
   using Integers = std::array<std::int32_t, index(D)>;
-  using Column = std::variant<std::vector<Vec<D>>*, std::vector<Integers>*, std::vector<double>*,
-                              std::vector<std::int32_t>*, std::vector<std::int64_t>*>;
+  using Column =
+      std::variant<std::vector<Vec<D>>*, std::vector<Integers>*, std::vector<double>*,
+                   std::vector<std::int32_t>*, std::vector<std::int64_t>*, std::vector<Group>*>;
 
   /// The vector must outlive the table; all registered vectors have one entry per particle.
   void add(std::string name, Column column) { fields_.push_back({std::move(name), column}); }

@@ -10,6 +10,7 @@
 #include "odpd/core/communicator.h"
 #include "odpd/core/vec.h"
 #include "odpd/particles/field_table.h"
+#include "odpd/particles/group.h"
 #include "odpd/particles/rigid_body.h"
 
 namespace odpd {
@@ -32,20 +33,15 @@ class Particles {
   /// Persistent identity, 0, 1, ...; survives reordering and restart.
   std::vector<std::int64_t> id;
   std::vector<std::int32_t> species;  ///< index into the scene's species
-  /// 0: free (fluid); k >= 1: known velocity, of wall k-1 of the scene or, above `walls`, of body k-1-walls;
-  /// -(k+1): constituent of body k, whose motion is unknown
-  std::vector<std::int32_t> group;
-  std::int32_t walls = 0;            ///< groups up to here are walls
+  std::vector<Group> group;           ///< who moves it
+  std::int32_t walls = 0;  ///< of the scene: bodies of known motion are counted behind them (Group)
   std::vector<RigidBody<D>> bodies;  ///< those of unknown motion first
 
   std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
-  bool is_free(std::size_t i) const { return group[i] == 0; }
-  bool is_known(std::size_t i) const { return group[i] > 0; }
+  bool is_free(std::size_t i) const { return group[i].is_free(); }
+  bool is_known(std::size_t i) const { return group[i].is_known(); }
   /// Rigid body of a particle, -1 when it belongs to none.
-  std::int32_t body_of(std::size_t i) const {
-    if (bodies.empty() || (group[i] >= 0 && group[i] <= walls)) return -1;
-    return group[i] < 0 ? -group[i] - 1 : group[i] - 1 - walls;
-  }
+  std::int32_t body_of(std::size_t i) const { return bodies.empty() ? -1 : group[i].body(walls); }
   /// Of all ranks, which call it together.
   std::int64_t free_count() const;
   /// Those of all ranks that move: free ones and constituents of bodies of unknown motion.
@@ -71,7 +67,7 @@ class Particles {
   /// so it is none of their own state and may be had from const particles. A restart finds the names given before `load`.
   std::vector<Vec<D>>& carry(const std::string& name) const;
   /// Appends one particle with the next identity, at rest.
-  void add(const Vec<D>& r, std::int32_t species_index, std::int32_t group_index);
+  void add(const Vec<D>& r, std::int32_t species_index, Group moved_by = {});
   void reorder(const std::vector<std::int32_t>& order) { fields_.reorder(order); }
   /// This rank's particles in the order of their identities, for sums that no reordering of memory may change.
   std::vector<std::int32_t> owned_by_identity() const;

@@ -55,7 +55,7 @@ class Scene : public Surroundings<D> {
   void add_driving_forces(const Particles<D>& particles, std::span<const Vec<D>> positions,
                           double t, std::vector<Vec<D>>& force) const override;
   bool driving_varies() const override { return settings_.force_varies(); }
-  Vec<D> known_velocity(std::int32_t group, double t) const override;
+  Vec<D> known_velocity(Group group, double t) const override;
   RigidMotion<D> known_motion(std::size_t body, double t) const override;
   RigidLoad<D> body_load(std::size_t body, double t) const override;
   bool confine(Vec<D>& r) const override;
