@@ -22,7 +22,7 @@ namespace {
 template <int D>
 class Obstacle : public odpd::NoSurroundings<D> {
  public:
-  Vec<D> known_velocity(std::int32_t, double) const override {
+  Vec<D> known_velocity(odpd::Group, double) const override {
     Vec<D> v;
     v[0] = 1.0;
     return v;
@@ -113,7 +113,8 @@ void hold_middle(std::int64_t count, odpd::Scene<D>& scene) {
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return norm(particles.position[a] - middle) < norm(particles.position[b] - middle);
   });
-  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) particles.group[order[k]] = 1;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+    particles.group[order[k]] = odpd::Group::wall(0);
 }
 
 }  // namespace
@@ -191,8 +192,8 @@ double Problem<D>::neighbours() {
   const odpd::DofMap<D>& dofs = dynamics->dofs();
   std::int64_t ends = 0;
   for (std::size_t k = 0; k < stage.network.i.size(); ++k) {
-    const bool free = dofs.site_of(static_cast<std::size_t>(stage.network.i[k])) >= 0 &&
-                      dofs.site_of(static_cast<std::size_t>(stage.network.j[k])) >= 0;
+    const bool free = dofs.mobile_of(static_cast<std::size_t>(stage.network.i[k])) >= 0 &&
+                      dofs.mobile_of(static_cast<std::size_t>(stage.network.j[k])) >= 0;
     ends += free ? 2 : 0;
   }
   return static_cast<double>(ends) / static_cast<double>(dofs.nodes());

@@ -24,7 +24,8 @@ std::vector<std::size_t> columns_clear_of_bodies(const Grid<D>& grid, const Scen
   for (std::size_t cell = 0; cell < columns.size(); ++cell) {
     Vec<D> centre;
     for (int c = 0; c < D; ++c)
-      centre[c] = grid.low[c] + (static_cast<double>(grid.place(cell, c)) + 0.5) * grid.spacing(c);
+      centre[c] =
+          grid.low[c] + (static_cast<double>(grid.coordinate(cell, c)) + 0.5) * grid.spacing(c);
     bool is_clear = true;
     for (const auto& body : scene.particles().bodies)
       if (norm(scene.box().separation(centre, body.pose.centre)) < clear) is_clear = false;

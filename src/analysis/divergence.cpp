@@ -49,7 +49,7 @@ void Divergence<D>::measure(const Clock&, const Particles<D>& particles,
 
 template <int D>
 void Divergence<D>::add_derivative(std::size_t cell, int a, int b, Terms& terms) const {
-  const std::int64_t n = grid_.count(a), at = grid_.place(cell, a);
+  const std::int64_t n = grid_.count(a), at = grid_.coordinate(cell, a);
   std::int64_t below = at - 1, above = at + 1;
   double width = 2.0 * grid_.spacing(a);
   if (scene_.box().is_periodic(a)) {

@@ -74,20 +74,20 @@ std::vector<double> MoleculeStatistics<D>::shapes(const Particles<D>& particles,
   for (const Molecule& m : scene_.molecules()) {
     const auto& settings = scene_.settings().molecules[m.kind];
     const auto first = index(m.first);
-    const auto place = [&](std::size_t bead) {
+    const auto bead_at = [&](std::size_t bead) {
       return stage.position[index(index_of[first + bead])];
     };
     if (!own.owns(std::int64_t{index_of[first]})) continue;
     double* sum = &sums[shape_columns * m.kind];
     for (const auto& link : settings.bonds) {
-      const double r = norm(stage.box.separation(place(index(link.i)), place(index(link.j))));
+      const double r = norm(stage.box.separation(bead_at(index(link.i)), bead_at(index(link.j))));
       const double share = 1.0 / (population_[m.kind] * static_cast<double>(settings.bonds.size()));
       sum[0] += share * r;
       sum[1] += share * r * r;
     }
     beads.assign(settings.shape.size(), Vec<D>{});
     for (const auto& [from, to] : tree_[m.kind])
-      beads[to] = beads[from] + stage.box.separation(place(to), place(from));
+      beads[to] = beads[from] + stage.box.separation(bead_at(to), bead_at(from));
     const double bead = 1.0 / static_cast<double>(beads.size());
     Vec<D> centre{};
     for (const Vec<D>& r : beads) centre += bead * r;

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "odpd/analysis/fluid_region.h"
+#include "odpd/analysis/force_points.h"
 #include "odpd/analysis/observer_keys.h"
-#include "odpd/analysis/places.h"
 #include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
@@ -92,13 +92,13 @@ void add_in_blocks(std::size_t n, std::size_t width, const Item& item, std::vect
 }
 
 template <int D>
-void add_stage_stress(const StressGrid<D>& grid, const Places<D>& places, const Stage<D>& stage,
-                      double weight, std::vector<double>& sum) {
+void add_stage_stress(const StressGrid<D>& grid, const ForcePoints<D>& points,
+                      const Stage<D>& stage, double weight, std::vector<double>& sum) {
   const PairNetwork<D>& network = stage.network;
   const auto edge = [&](std::size_t k, double* into) {
     if (!network.counts(k)) return;
-    const Vec<D> r = places.at(index(network.i[k]));
-    const Vec<D> arm = places.between(network, k);
+    const Vec<D> r = points.at(index(network.i[k]));
+    const Vec<D> arm = points.between(network, k);
     const Vec<D> push = network.push(k);
     if (push != Vec<D>{}) grid.add_line(conservative_part, r, arm, arm, weight * push, into);
     grid.add_line(friction_part, r, arm, arm,
@@ -109,7 +109,7 @@ void add_stage_stress(const StressGrid<D>& grid, const Places<D>& places, const 
 
 // N kT I, or with mass sum m v v; a body is one particle at its centre.
 template <int D>
-void add_kinetic(const StressGrid<D>& grid, const Places<D>& places, const Scene<D>& scene,
+void add_kinetic(const StressGrid<D>& grid, const ForcePoints<D>& points, const Scene<D>& scene,
                  const Particles<D>& particles, const StepRecord<D>& record, double* sum) {
   const double mass = scene.settings().mass;
   const bool moving = mass > 0.0 && !record.v_start.empty();
@@ -128,7 +128,7 @@ void add_kinetic(const StressGrid<D>& grid, const Places<D>& places, const Scene
   const Share own = particles.owned();
   for (std::size_t i = 0; i < particles.group.size(); ++i)
     if (particles.is_free(i) && own.owns(i))
-      add(places.at(i), mass, moving ? record.v_start[i] : Vec<D>{});
+      add(points.at(i), mass, moving ? record.v_start[i] : Vec<D>{});
   if (particles.bodies.empty()) return;
   const std::vector<std::int32_t> at = particles.index_of_id();
   for (const RigidBody<D>& body : particles.bodies) {
@@ -141,7 +141,7 @@ void add_kinetic(const StressGrid<D>& grid, const Places<D>& places, const Scene
     if (!own.owns(first)) continue;
     if (const Box<D>& box = record.start.box; moving && box.shear)
       v[box.shear->flow] -= record.start.crossed[first] * box.sliding;
-    add(places.at(first), mass * n, v);
+    add(points.at(first), mass * n, v);
   }
 }
 
@@ -153,18 +153,18 @@ std::vector<double> stress_of(const Scene<D>& scene, const Particles<D>& particl
   const StressGrid<D> grid(scene, bins);
   std::vector<double> sum(grid.width(), 0.0);
   const Stage<D>& start = record.start;
-  const Places<D> places(particles, start);
-  add_kinetic(grid, places, scene, particles, record, sum.data());
+  const ForcePoints<D> points(particles, start);
+  add_kinetic(grid, points, scene, particles, record, sum.data());
   // Monte Carlo has edges and no velocities.
   if (start.velocity.size() == start.position.size() && record.start_weight > 0.0)
-    add_stage_stress(grid, places, start, record.start_weight, sum);
+    add_stage_stress(grid, points, start, record.start_weight, sum);
   if (record.has_corrector())
-    add_stage_stress(grid, Places<D>(particles, record.corrector), record.corrector,
+    add_stage_stress(grid, ForcePoints<D>(particles, record.corrector), record.corrector,
                      1.0 - record.start_weight, sum);
   const auto noise = [&](std::size_t k, double* into) {
     if (!start.network.counts(k)) return;
-    const Vec<D> arm = places.between(start.network, k);
-    grid.add_line(noise_part, places.at(index(start.network.i[k])), arm, arm, record.edge_noise[k],
+    const Vec<D> arm = points.between(start.network, k);
+    grid.add_line(noise_part, points.at(index(start.network.i[k])), arm, arm, record.edge_noise[k],
                   into);
   };
   add_in_blocks(record.edge_noise.size(), grid.width(), noise, sum);

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "odpd/analysis/fluid_region.h"
-#include "odpd/analysis/places.h"
+#include "odpd/analysis/force_points.h"
 #include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
@@ -52,17 +52,17 @@ namespace {
 // Free particles of this rank and bodies of unknown motion, each of these one particle at its centre and its first member's
 // rank's, between the wall surfaces.
 template <int D>
-double centres_inside(const Particles<D>& particles, const Places<D>& places,
+double centres_inside(const Particles<D>& particles, const ForcePoints<D>& points,
                       const FluidRegion<D>& region) {
   const Share own = particles.owned();
   double count = 0.0;
   for (std::size_t i = 0; i < particles.group.size(); ++i)
-    if (particles.is_free(i) && own.owns(i) && region.holds(places.at(i))) count += 1.0;
+    if (particles.is_free(i) && own.owns(i) && region.holds(points.at(i))) count += 1.0;
   if (particles.bodies.empty()) return count;
-  const std::vector<std::int32_t> place = particles.index_of_id();
+  const std::vector<std::int32_t> index_of = particles.index_of_id();
   for (const RigidBody<D>& body : particles.bodies) {
-    const auto first = index(place[index(body.members[0])]);
-    if (!body.known && own.owns(first) && region.holds(places.at(first))) count += 1.0;
+    const auto first = index(index_of[index(body.members[0])]);
+    if (!body.known && own.owns(first) && region.holds(points.at(first))) count += 1.0;
   }
   return count;
 }
@@ -95,16 +95,16 @@ void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepR
   std::vector<double> force_squared, laplacian, virial(index(network.size()));
   double wall_energy = 0.0;
   configurational_terms(scene_, particles, record.start, force_squared, laplacian, wall_energy);
-  const Places<D> places(particles, record.start);
+  const ForcePoints<D> points(particles, record.start);
   const FluidRegion<D> region(scene_);
   for (std::size_t k = 0; k < virial.size(); ++k) {
     if (!network.counts(k)) continue;
-    const Vec<D> arm = places.between(network, k);
-    const Vec<D> r = places.at(index(network.i[k]));
+    const Vec<D> arm = points.between(network, k);
+    const Vec<D> r = points.at(index(network.i[k]));
     virial[k] = region.inside(r, arm).length() * dot(arm, network.push(k));
   }
   const Share own = particles.owned();
-  const double centres = own.ranks->sum(centres_inside(particles, places, region));
+  const double centres = own.ranks->sum(centres_inside(particles, points, region));
   const double sum_of_virial = own.ranks->sum(fixed_sum(virial));
   this->add({(network.energy() + own.ranks->sum(wall_energy)) /
                  static_cast<double>(particles.moving_count()),

@@ -85,13 +85,13 @@ void save_inputs(const Config& config, const SceneSettings<D>& scene, Checkpoint
   inputs.write("start/species",
                std::vector<std::int64_t>(scene.start_species.begin(), scene.start_species.end()));
   std::vector<std::int64_t> sizes;
-  std::vector<Vec<D>> sites;
+  std::vector<Vec<D>> positions;
   for (const std::vector<Vec<D>>& body : scene.start_bodies) {
     sizes.push_back(static_cast<std::int64_t>(body.size()));
-    sites.insert(sites.end(), body.begin(), body.end());
+    positions.insert(positions.end(), body.begin(), body.end());
   }
   inputs.write("start/body_sizes", sizes);
-  inputs.write("start/body_sites", flat(sites));
+  inputs.write("start/body_positions", flat(positions));
   if (scene.box.shear) inputs.write("start/shear", std::vector<double>{scene.box.shear->start});
 }
 
@@ -114,8 +114,8 @@ void take_start(CheckpointReader& in, SceneSettings<D>& scene) {
   scene.start_positions = vectors_of<D>(inputs.read_doubles("start/positions"));
   for (const std::int64_t species : inputs.read_integers("start/species"))
     scene.start_species.push_back(static_cast<std::int32_t>(species));
-  const std::vector<Vec<D>> sites = vectors_of<D>(inputs.read_doubles("start/body_sites"));
-  auto next = sites.begin();
+  const std::vector<Vec<D>> positions = vectors_of<D>(inputs.read_doubles("start/body_positions"));
+  auto next = positions.begin();
   for (const std::int64_t size : inputs.read_integers("start/body_sizes")) {
     scene.start_bodies.emplace_back(next, next + size);
     next += size;

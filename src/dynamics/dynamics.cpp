@@ -136,7 +136,7 @@ auto Dynamics<D>::force(const Stage<D>& stage) -> Unknowns {
     const auto i = index(particle);
     force[i] = stage.potential_force[i] + stage.driving_force[i];
   });
-  if (motion_.dofs().sites() < motion_.dofs().particles()) {
+  if (motion_.dofs().mobile() < motion_.dofs().particles()) {
     std::vector<std::int32_t> known;
     std::vector<Vec<D>> velocity = stage.velocity;
     for (std::size_t i = 0; i < velocity.size(); ++i) {

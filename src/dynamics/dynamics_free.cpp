@@ -30,13 +30,13 @@ double norm_of_forces(std::span<const double> load, const Share& share,
 /// Says once what the null motions are. Throws SolverError where R v = f has no answer, or none that is told from others.
 template <int D>
 void Dynamics<D>::judge_null_motions(const Stage<D>& stage) {
-  const Resistance<D>& sites = resistance_.sites();
-  if (sites.null_motions().empty()) return;
+  const Resistance<D>& mobile = resistance_.mobile();
+  if (mobile.null_motions().empty()) return;
   std::string who;
-  for (const FreeGroup& group : sites.free_groups())
+  for (const FreeGroup& group : mobile.free_groups())
     who += fmt::format("{}{} particles, among them particle {}, can {} ({} null motion(s) of R)",
                        who.empty() ? "" : "; ", group.particles, particles_.id[index(group.first)],
-                       sites.translations_are_null()
+                       mobile.translations_are_null()
                            ? "turn as one"
                            : "move as one along what holds them, or turn about it",
                        group.motions);
@@ -53,7 +53,7 @@ void Dynamics<D>::judge_null_motions(const Stage<D>& stage) {
   const Unknowns f = force(stage);
   const Share share = motion_.dofs().share();
   const double least = no_work * norm_of_forces(f, share, stage.network);
-  for (const std::vector<double>& u : sites.null_motions())
+  for (const std::vector<double>& u : mobile.null_motions())
     if (std::abs(share.dot(u, f, D)) > least)
       throw SolverError(
           who + ", while forces from outside drive it: R v = f has no answer. Cures: " + cures,

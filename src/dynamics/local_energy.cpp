@@ -29,7 +29,7 @@ LocalEnergy<D>::LocalEnergy(const Box<D>& box, const PairModel<D>& model,
 }
 
 template <int D>
-void LocalEnergy<D>::place() {
+void LocalEnergy<D>::sort_in() {
   for (auto& cell : members_) cell.clear();
   for (std::size_t i = 0; i < cell_.size(); ++i) {
     const Vec<D>& r = particles_.position[i];

@@ -143,7 +143,7 @@ void MonteCarlo<D>::sweep(Dynamics<D>& dynamics, std::int64_t step) {
   const CounterRandom random(dynamics.settings().seed, Stream::monte_carlo);
   const Share own = particles.owned();
   std::array<std::int64_t, 2> count{};  // trials and those accepted, of this rank
-  energy_->place();
+  energy_->sort_in();
   for (const std::int32_t row : particles.index_of_id()) {
     const auto i = index(row);
     if (!particles.is_free(i)) continue;

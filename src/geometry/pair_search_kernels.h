@@ -4,7 +4,7 @@
 
 namespace odpd::kernels {
 
-/// Particles in the order of their cells: x[c][k] is component c, index[k] the place in memory. Both have 8 entries more than
+/// Particles in the order of their cells: x[c][k] is component c, index[k] the index in memory. Both have 8 entries more than
 /// there are particles, of any value.
 struct SortedParticles {
   const double* x[3];

@@ -30,7 +30,7 @@ DofMap<D>::DofMap(const Particles<D>& particles) : owned_(particles.owned()) {
   free_ = NodeMap(without, block_size());
   if (unknown_ == 0) return;
   for (std::size_t i = 0; i < n; ++i) without[i] = particles.is_known(i) ? 1 : 0;
-  sites_ = NodeMap(without, block_size());
+  mobile_ = NodeMap(without, block_size());
 }
 
 template <int D>

@@ -22,17 +22,18 @@ constexpr double no_dissipation = 1e-9;
 constexpr double parallel = 1e-3;  // sine of the angle of two directions
 
 template <int D>
-Vec<D> place(const Resistance<D>& resistance, std::size_t site) {
+Vec<D> position(const Resistance<D>& resistance, std::size_t row) {
   Vec<D> r;
-  for (std::size_t c = 0; c < D; ++c) r.x[c] = resistance.positions()[site * D + c];
+  for (std::size_t c = 0; c < D; ++c) r.x[c] = resistance.positions()[row * D + c];
   return r;
 }
 
-/// From a site to the other end of its link.
+/// From a particle (a row of R) to the other end of its link.
 template <int D>
-Vec<D> way(const Resistance<D>& resistance, std::size_t site,
+Vec<D> way(const Resistance<D>& resistance, std::size_t row,
            const typename Resistance<D>::Link& l) {
-  return resistance.box().separation(place(resistance, index(l.node)), place(resistance, site));
+  return resistance.box().separation(position(resistance, index(l.node)),
+                                     position(resistance, row));
 }
 
 inline bool independent(const Vec<2>& a, const Vec<2>& b) {
@@ -64,14 +65,14 @@ template <int D>
 std::optional<Vec<D>> winding(const Resistance<D>& resistance, std::size_t start, int c) {
   const double length = resistance.box().size[c];
   Vec<D> gone{};
-  std::size_t site = start;
+  std::size_t row = start;
   for (std::int64_t step = 0; step < resistance.nodes() && gone[c] < 2.0 * length; ++step) {
     std::int32_t next = -1;
     Vec<D> reached{};
     double best = 0.0;
-    for (const auto& link : resistance.links(site)) {
+    for (const auto& link : resistance.links(row)) {
       if (!resistance.ties(link)) continue;
-      const Vec<D> d = way(resistance, site, link);
+      const Vec<D> d = way(resistance, row, link);
       const Vec<D> there = gone + d;
       if (index(link.node) == start && there[c] > 0.25 * length) return there;
       Vec<D> aside = there;
@@ -83,7 +84,7 @@ std::optional<Vec<D>> winding(const Resistance<D>& resistance, std::size_t start
       best = merit;
     }
     if (next < 0) return {};
-    site = index(next);
+    row = index(next);
     gone = reached;
   }
   return {};
@@ -103,20 +104,20 @@ bool goes_round(const Resistance<D>& resistance) {
   return ways.enough();
 }
 
-/// Friction with known velocities holds the site in every direction.
+/// Friction with known velocities holds the particle in every direction.
 template <int D>
-bool stuck(const Resistance<D>& resistance, std::size_t site) {
-  return relative_determinant<D>(resistance.anchors()[site].data()) > 1e-6;
+bool stuck(const Resistance<D>& resistance, std::size_t row) {
+  return relative_determinant<D>(resistance.anchors()[row].data()) > 1e-6;
 }
 
-/// The site and D - 1 linked neighbours, not on a line with it, are stuck: so their group is.
+/// The particle and D - 1 linked neighbours, not on a line with it, are stuck: so their group is.
 template <int D>
-bool holds_fast(const Resistance<D>& resistance, std::size_t site) {
-  if (!stuck(resistance, site)) return false;
+bool holds_fast(const Resistance<D>& resistance, std::size_t row) {
+  if (!stuck(resistance, row)) return false;
   Directions<D> ways;
-  for (const auto& link : resistance.links(site)) {
+  for (const auto& link : resistance.links(row)) {
     if (!resistance.ties(link) || !stuck(resistance, index(link.node))) continue;
-    const Vec<D> d = way(resistance, site, link);
+    const Vec<D> d = way(resistance, row, link);
     if (norm(d) > 0.0) ways.add(d);
     if (ways.enough()) return true;
   }
@@ -158,13 +159,13 @@ class GroupMotions {
       : resistance_(resistance),
         dofs_(dofs),
         arms_(arms),
-        body_(index(dofs.sites()), -1),
-        node_(index(dofs.sites()), 0),
-        at_(index(dofs.sites())),
-        seen_(index(dofs.sites()), 0) {
+        body_(index(dofs.mobile()), -1),
+        node_(index(dofs.mobile()), 0),
+        at_(index(dofs.mobile())),
+        seen_(index(dofs.mobile()), 0) {
     for (std::size_t b = 0; b < index(dofs.bodies()); ++b)
       for (const std::int32_t p : dofs.constituents(b))
-        body_[index(dofs.site_of(index(p)))] = static_cast<std::int32_t>(b);
+        body_[index(dofs.mobile_of(index(p)))] = static_cast<std::int32_t>(b);
     std::size_t free = 0;
     for (std::size_t s = 0; s < body_.size(); ++s)
       node_[s] = body_[s] < 0 ? dofs.free_node(free++) : dofs.body_node(index(body_[s]));
@@ -182,42 +183,41 @@ class GroupMotions {
       found.basis.push_back(std::move(u));
     }
     if (free.cols() > 0)
-      found.groups.push_back({static_cast<std::int64_t>(sites_.size()), dofs_.particle_of(root),
+      found.groups.push_back({static_cast<std::int64_t>(rows_.size()), dofs_.particle_of(root),
                               static_cast<std::int64_t>(free.cols())});
   }
 
  private:
   static constexpr int motions = D + rotation_components<D>;
 
-  /// Places of the group's sites along its links, its movers, and their centre.
+  /// Positions of the group's particles along its links, its movers, and their centre.
   void unfold(std::size_t root) {
-    sites_.assign(1, root);
+    rows_.assign(1, root);
     movers_.clear();
-    at_[root] = place(resistance_, root);
+    at_[root] = position(resistance_, root);
     seen_[root] = 1;
-    const auto reach = [&](std::size_t site, const Vec<D>& there) {
-      if (seen_[site] != 0) return;
-      seen_[site] = 1;
-      at_[site] = there;
-      sites_.push_back(site);
+    const auto reach = [&](std::size_t row, const Vec<D>& there) {
+      if (seen_[row] != 0) return;
+      seen_[row] = 1;
+      at_[row] = there;
+      rows_.push_back(row);
     };
     std::vector<char> body_seen(index(dofs_.bodies()), 0);
-    for (std::size_t k = 0; k < sites_.size(); ++k) {
-      const std::size_t site = sites_[k];
-      for (const auto& link : resistance_.links(site))
-        if (resistance_.ties(link))
-          reach(index(link.node), at_[site] + way(resistance_, site, link));
-      if (body_[site] < 0) {
-        movers_.push_back({at_[site], node_[site], -1});
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      const std::size_t row = rows_[k];
+      for (const auto& link : resistance_.links(row))
+        if (resistance_.ties(link)) reach(index(link.node), at_[row] + way(resistance_, row, link));
+      if (body_[row] < 0) {
+        movers_.push_back({at_[row], node_[row], -1});
         continue;
       }
-      const auto body = index(body_[site]);
+      const auto body = index(body_[row]);
       if (body_seen[body] != 0) continue;
       body_seen[body] = 1;
-      const Vec<D> centre = at_[site] - arms_[index(dofs_.particle_of(site))];
+      const Vec<D> centre = at_[row] - arms_[index(dofs_.particle_of(row))];
       for (const std::int32_t p : dofs_.constituents(body))
-        reach(index(dofs_.site_of(index(p))), centre + arms_[index(p)]);
-      movers_.push_back({centre, node_[site], body_[site]});
+        reach(index(dofs_.mobile_of(index(p))), centre + arms_[index(p)]);
+      movers_.push_back({centre, node_[row], body_[row]});
     }
     Vec<D> sum{};
     for (const Mover& m : movers_) sum += m.centre;
@@ -239,17 +239,17 @@ class GroupMotions {
     }
   }
 
-  /// Adds slips times the roots of their friction: of links to later sites, and of known neighbours.
-  void add_slips(std::size_t site, int first, Slips& slips) const {
+  /// Adds slips times the roots of their friction: of links to later particles, and of known neighbours.
+  void add_slips(std::size_t row, int first, Slips& slips) const {
     const auto along = [&](const Vec<D>& direction, const auto& slip_of) {
-      Eigen::RowVectorXd row(motions - first);
-      for (int c = first; c < motions; ++c) row(c - first) = dot(direction, slip_of(c));
-      slips.add(row);
+      Eigen::RowVectorXd slip(motions - first);
+      for (int c = first; c < motions; ++c) slip(c - first) = dot(direction, slip_of(c));
+      slips.add(slip);
     };
-    for (const auto& link : resistance_.links(site)) {
-      if (!resistance_.ties(link) || index(link.node) < site) continue;
+    for (const auto& link : resistance_.links(row)) {
+      if (!resistance_.ties(link) || index(link.node) < row) continue;
       const auto slip = [&](int c) {
-        return velocity(c, at_[site]) - velocity(c, at_[index(link.node)]);
+        return velocity(c, at_[row]) - velocity(c, at_[index(link.node)]);
       };
       const Vec<D>& g = resistance_.g(link);
       if (!resistance_.transverse()) {
@@ -258,15 +258,14 @@ class GroupMotions {
       }
       typename Resistance<D>::Block friction{};
       const auto& across = resistance_.across(link);
-      for (std::size_t row = 0; row < D; ++row)
-        for (std::size_t col = 0; col < D; ++col)
-          friction[row * D + col] =
-              across.sign * g.x[row] * g.x[col] + (row == col ? across.zeta_perp : 0.0);
+      for (std::size_t a = 0; a < D; ++a)
+        for (std::size_t b = 0; b < D; ++b)
+          friction[a * D + b] = across.sign * g.x[a] * g.x[b] + (a == b ? across.zeta_perp : 0.0);
       for (const Vec<D>& root : roots(friction)) along(root, slip);
     }
     if (resistance_.anchors().empty()) return;
-    for (const Vec<D>& root : roots(resistance_.anchors()[site]))
-      along(root, [&](int c) { return velocity(c, at_[site]); });
+    for (const Vec<D>& root : roots(resistance_.anchors()[row]))
+      along(root, [&](int c) { return velocity(c, at_[row]); });
   }
   /// Vectors with block = sum of their squares; what rounding adds to a singular block left out.
   static std::vector<Vec<D>> roots(const typename Resistance<D>::Block& block) {
@@ -295,10 +294,10 @@ class GroupMotions {
         }
     Slips slips(count);
     double stiffest = 0.0;
-    for (const std::size_t site : sites_) {
-      add_slips(site, first, slips);
+    for (const std::size_t row : rows_) {
+      add_slips(row, first, slips);
       for (std::size_t c = 0; c < D; ++c)
-        stiffest = std::max(stiffest, resistance_.diagonal()[site][c * D + c]);
+        stiffest = std::max(stiffest, resistance_.diagonal()[row][c * D + c]);
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> sizes(product);
     const double largest = sizes.eigenvalues().maxCoeff();
@@ -327,11 +326,11 @@ class GroupMotions {
   const Resistance<D>& resistance_;
   const DofMap<D>& dofs_;
   std::span<const Vec<D>> arms_;
-  std::vector<std::int32_t> body_;  // per site, -1: none
-  std::vector<std::size_t> node_;   // per site
-  std::vector<Vec<D>> at_;          // per site
-  std::vector<char> seen_;          // per site
-  std::vector<std::size_t> sites_;  // of the group
+  std::vector<std::int32_t> body_;  // per mobile particle, -1: none
+  std::vector<std::size_t> node_;   // per mobile particle
+  std::vector<Vec<D>> at_;          // per mobile particle
+  std::vector<char> seen_;          // per mobile particle
+  std::vector<std::size_t> rows_;   // of the group
   std::vector<Mover> movers_;       // of the group
   Vec<D> centre_{};
 };

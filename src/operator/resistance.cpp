@@ -54,8 +54,8 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
                             const Particles<D>& particles, std::span<const Vec<D>> positions,
                             double shift, double stiffness_time, double bond_time,
                             std::span<const Vec<D>> arms) {
-  nodes_ = dofs.sites();
-  share_ = dofs.site_share();
+  nodes_ = dofs.mobile();
+  share_ = dofs.mobile_share();
   shift_ = shift;
   stiffness_time_ = stiffness_time;
   bond_time_ = bond_time;
@@ -64,7 +64,7 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
   weigh_edges(network);
   count_links(network, dofs);
   resize_afresh(links_, index(start_.back()));
-  const bool anchored = shift != 0.0 || share_.ranks->any(dofs.sites() < dofs.particles());
+  const bool anchored = shift != 0.0 || share_.ranks->any(dofs.mobile() < dofs.particles());
   anchor_.assign(anchored ? n_nodes : 0, Block{});
   diagonal_.resize(n_nodes);
   parent_.resize(n_nodes);
@@ -113,7 +113,7 @@ void Resistance<D>::weigh_edges(const PairNetwork<D>& network) {
 
 template <int D>
 void Resistance<D>::count_links(const PairNetwork<D>& network, const DofMap<D>& dofs) {
-  if (dofs.sites() == dofs.particles()) {
+  if (dofs.mobile() == dofs.particles()) {
     start_.assign(network.start.begin(), network.start.end());
     return;
   }
@@ -122,7 +122,7 @@ void Resistance<D>::count_links(const PairNetwork<D>& network, const DofMap<D>& 
     const auto n = index(node);
     const std::int32_t particle = dofs.particle_of(n);
     for (const std::int32_t edge : network.edges_of(particle))
-      if (dofs.site_of(other_end(network, edge, particle)) >= 0) ++start_[n + 1];
+      if (dofs.mobile_of(other_end(network, edge, particle)) >= 0) ++start_[n + 1];
   });
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
 }
@@ -135,7 +135,7 @@ void Resistance<D>::fill_row(std::size_t node, std::int32_t particle, const Pair
   auto parent = static_cast<std::int32_t>(node);
   for (const std::int32_t edge : network.edges_of(particle)) {
     const auto k = index(edge);
-    const std::int32_t partner = dofs.site_of(other_end(network, edge, particle));
+    const std::int32_t partner = dofs.mobile_of(other_end(network, edge, particle));
     Block& sum = partner >= 0 ? free : known;
     Vec<D> g = g_[k];
     if (!across_.empty()) {
@@ -225,7 +225,7 @@ void Resistance<D>::check_clusters(const DofMap<D>& dofs, const Particles<D>& pa
   };
   for (std::size_t b = 0; b < index(dofs.bodies()); ++b)
     for (const std::int32_t particle : dofs.constituents(b))
-      unite(dofs.site_of(index(dofs.constituents(b)[0])), dofs.site_of(index(particle)));
+      unite(dofs.mobile_of(index(dofs.constituents(b)[0])), dofs.mobile_of(index(particle)));
   for (const std::size_t n : roots) join(n);
   if (groups <= 1) return;  // held, or the null space
   for (std::size_t n = 0; n < n_nodes && groups > 1; ++n) join(n);

@@ -29,11 +29,11 @@ void RigidResistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>&
                                  const Particles<D>& particles, std::span<const Vec<D>> positions,
                                  std::span<const Vec<D>> arms, double shift, double stiffness_time,
                                  double bond_time) {
-  sites_.rebuild(network, dofs, particles, positions, shift, stiffness_time, bond_time, arms);
+  mobile_.rebuild(network, dofs, particles, positions, shift, stiffness_time, bond_time, arms);
   dofs_ = dofs.bodies() > 0 ? &dofs : nullptr;
   if (dofs_ == nullptr) return;
   arms_.assign(arms.begin(), arms.end());
-  node_.resize(index(dofs.sites()));
+  node_.resize(index(dofs.mobile()));
   auto node = static_cast<std::int32_t>(dofs.free_node(0));
   for (std::size_t s = 0; s < node_.size(); ++s) {
     const auto p = index(dofs.particle_of(s));
@@ -43,14 +43,14 @@ void RigidResistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>&
 
 template <int D>
 void RigidResistance<D>::apply(std::span<const double> x, std::span<double> y) const {
-  const auto n = index(dofs_->sites());
+  const auto n = index(dofs_->mobile());
   // Through vectors per particle: few of a scene's particles are known.
   std::vector<Vec<D>> velocity, force(arms_.size());
   dofs_->scatter(arms_, x, force, velocity);
   std::vector<double> v(n * D), f(n * D);
   for (std::size_t s = 0; s < n; ++s)
     for (std::size_t c = 0; c < D; ++c) v[s * D + c] = velocity[index(dofs_->particle_of(s))].x[c];
-  sites_.apply(v, f);
+  mobile_.apply(v, f);
   for (std::size_t s = 0; s < n; ++s)
     for (std::size_t c = 0; c < D; ++c) force[index(dofs_->particle_of(s))].x[c] = f[s * D + c];
   std::vector<double> q;
@@ -61,17 +61,17 @@ void RigidResistance<D>::apply(std::span<const double> x, std::span<double> y) c
 }
 
 template <int D>
-auto RigidResistance<D>::movers(std::size_t site) const -> std::vector<Mover> {
+auto RigidResistance<D>::movers(std::size_t row) const -> std::vector<Mover> {
   typename Resistance<D>::Block unit{}, turn{};
   for (std::size_t c = 0; c < D; ++c) unit[c * D + c] = 1.0;
-  if (node_[site] >= 0) return {{index(node_[site]), unit}};
-  const auto body = index(-node_[site] - 1);
-  const Vec<D>& arm = arms_[index(dofs_->particle_of(site))];
+  if (node_[row] >= 0) return {{index(node_[row]), unit}};
+  const auto body = index(-node_[row] - 1);
+  const Vec<D>& arm = arms_[index(dofs_->particle_of(row))];
   for (std::size_t c = 0; c < D; ++c) {
     Vec<D> w{};
     w.x[c] = 1.0;
     const Vec<D> v = swing(w, arm);
-    for (std::size_t row = 0; row < D; ++row) turn[row * D + c] = v.x[row];
+    for (std::size_t k = 0; k < D; ++k) turn[k * D + c] = v.x[k];
   }
   return {{dofs_->body_node(body), unit}, {body, turn}};
 }
@@ -85,24 +85,24 @@ void RigidResistance<D>::add_unused(std::size_t node, double* block) const {
 template <int D>
 void RigidResistance<D>::block_diagonal(std::span<double> blocks) const {
   std::fill(blocks.begin(), blocks.end(), 0.0);
-  const Share own_sites = sites_.share();
+  const Share own_mobile = mobile_.share();
   // No edges inside a body: its constituents' diagonal blocks are all that falls on its own.
   for (std::size_t s = 0; s < node_.size(); ++s) {
-    if (node_[s] < 0 && !own_sites.owns(s)) continue;
+    if (node_[s] < 0 && !own_mobile.owns(s)) continue;
     for (const Mover& m : movers(s))
-      add_triple_product<D>(m.map.data(), sites_.diagonal()[s].data(), m.map.data(),
+      add_triple_product<D>(m.map.data(), mobile_.diagonal()[s].data(), m.map.data(),
                             &blocks[m.node * D * D]);
   }
   const std::size_t of_bodies = index(dofs_->bodies()) * D * D;
-  own_sites.ranks->sum(blocks.first(of_bodies));
-  own_sites.ranks->sum(blocks.last(of_bodies));
+  own_mobile.ranks->sum(blocks.first(of_bodies));
+  own_mobile.ranks->sum(blocks.last(of_bodies));
   for (std::size_t n = 0; n < index(nodes()); ++n) add_unused(n, &blocks[n * D * D]);
 }
 
 template <int D>
 const BlockCsr& RigidResistance<D>::matrix() const {
   if (matrix_generation_ == generation()) return matrix_;
-  const BlockCsr& inner = sites_.matrix();
+  const BlockCsr& inner = mobile_.matrix();
   const auto n = index(nodes());
   std::vector<std::map<std::int32_t, typename Resistance<D>::Block>> rows(n);
   for (std::size_t s = 0; s < node_.size(); ++s)

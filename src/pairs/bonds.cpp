@@ -116,21 +116,21 @@ void BondedModel<D>::write_edges(const PairList<D>& list, const Box<D>& box,
   if (frames_.empty()) return;
   network.beyond.assign(bonds_.size(), {});
   for (const SiteFrame<D>& frame : frames_)
-    write_frame<D>(frame, places_of(frame, box, positions, particles), index(pairs) + frame.bond,
+    write_frame<D>(frame, points_of(frame, box, positions, particles), index(pairs) + frame.bond,
                    network);
 }
 
 // Each next to the first of them: bonds are shorter than half the box.
 template <int D>
-std::vector<Vec<D>> BondedModel<D>::places_of(const SiteFrame<D>& frame, const Box<D>& box,
+std::vector<Vec<D>> BondedModel<D>::points_of(const SiteFrame<D>& frame, const Box<D>& box,
                                               std::span<const Vec<D>> positions,
                                               const Particles<D>& particles) const {
-  std::vector<Vec<D>> places;
+  std::vector<Vec<D>> points;
   const Vec<D> first = positions[place_of(frame.first, particles)];
   for (std::size_t k = 0; k < frame.sites.size(); ++k)
-    places.push_back(box.separation(
+    points.push_back(box.separation(
         positions[place_of(frame.first + static_cast<std::int64_t>(k), particles)], first));
-  return places;
+  return points;
 }
 
 template <int D>
@@ -246,14 +246,14 @@ double BondedModel<D>::frame_energy(std::int64_t id, const Vec<D>& r, const Box<
   const SiteFrame<D>& frame = *(after - 1);
   const auto at = index(id - frame.first);
   if (at >= frame.sites.size()) return 0.0;
-  std::vector<Vec<D>> places = places_of(frame, box, particles.position, particles);
+  std::vector<Vec<D>> points = points_of(frame, box, particles.position, particles);
   if (at > 0) {
-    places[at] = box.separation(r, particles.position[place_of(frame.first, particles)]);
+    points[at] = box.separation(r, particles.position[place_of(frame.first, particles)]);
   } else {
     const Vec<D> shift = box.separation(r, particles.position[place_of(id, particles)]);
-    for (std::size_t k = 1; k < places.size(); ++k) places[k] -= shift;
+    for (std::size_t k = 1; k < points.size(); ++k) points[k] -= shift;
   }
-  return 0.5 * frame.H * BalancedFrame<D>(frame, places).distance_squared();
+  return 0.5 * frame.H * BalancedFrame<D>(frame, points).distance_squared();
 }
 
 template double longest_bond<2>(const Box<2>&);

@@ -51,8 +51,8 @@ std::vector<double> laplacians(const SiteFrame<D>& frame, const BalancedFrame<D>
 }  // namespace
 
 template <int D>
-BalancedFrame<D>::BalancedFrame(const SiteFrame<D>& frame, std::span<const Vec<D>> places)
-    : arms(places.begin(), places.end()) {
+BalancedFrame<D>::BalancedFrame(const SiteFrame<D>& frame, std::span<const Vec<D>> points)
+    : arms(points.begin(), points.end()) {
   Vec<D> centre{};
   for (const Vec<D>& r : arms) centre += r;
   centre *= 1.0 / static_cast<double>(arms.size());
@@ -69,9 +69,9 @@ double BalancedFrame<D>::distance_squared() const {
 }
 
 template <int D>
-void write_frame(const SiteFrame<D>& frame, std::span<const Vec<D>> places, std::size_t edge,
+void write_frame(const SiteFrame<D>& frame, std::span<const Vec<D>> points, std::size_t edge,
                  PairNetwork<D>& network) {
-  const BalancedFrame<D> balanced(frame, places);
+  const BalancedFrame<D> balanced(frame, points);
   const std::vector<double> laplacian = laplacians(frame, balanced);
   const auto n = static_cast<double>(frame.sites.size());
   const double spring = frame.H / n;

@@ -25,44 +25,44 @@ bool inside_a_body(const Box<D>& box, const Particles<D>& particles, const Vec<D
 
 namespace {
 
-// Sites of a regular grid over [low, high), counts per direction.
+// Points of a regular grid over [low, high), counts per direction.
 template <int D>
-std::vector<Vec<D>> grid_sites(const Vec<D>& low, const Vec<D>& high,
-                               const std::array<std::int64_t, D>& count) {
-  std::vector<Vec<D>> sites(1, low);
+std::vector<Vec<D>> grid_points(const Vec<D>& low, const Vec<D>& high,
+                                const std::array<std::int64_t, D>& count) {
+  std::vector<Vec<D>> points(1, low);
   for (int c = 0; c < D; ++c) {
     const std::int64_t n = count[index(c)];
     std::vector<Vec<D>> next;
-    next.reserve(sites.size() * index(n));
+    next.reserve(points.size() * index(n));
     for (std::int64_t k = 0; k < n; ++k)
-      for (Vec<D> site : sites) {
-        site[c] =
+      for (Vec<D> point : points) {
+        point[c] =
             low[c] + (high[c] - low[c]) * (static_cast<double>(k) + 0.5) / static_cast<double>(n);
-        next.push_back(site);
+        next.push_back(point);
       }
-    sites.swap(next);
+    points.swap(next);
   }
-  return sites;
+  return points;
 }
 
-// The closest to a square or cubic lattice with at least `count` sites, thinned evenly to `count`.
+// The closest to a square or cubic lattice with at least `count` points, thinned evenly to `count`.
 template <int D>
 std::vector<Vec<D>> lattice(const Vec<D>& low, const Vec<D>& high, std::int64_t count) {
   if (count == 0) return {};
   double spacing = std::pow(Box<D>{high - low, {}}.volume() / static_cast<double>(count), 1.0 / D);
   std::array<std::int64_t, D> n{};
-  std::int64_t sites = 0;
-  for (; sites < count; spacing *= 0.999) {
-    sites = 1;
+  std::int64_t points = 0;
+  for (; points < count; spacing *= 0.999) {
+    points = 1;
     for (int c = 0; c < D; ++c) {
       n[index(c)] = std::max<std::int64_t>(
           1, static_cast<std::int64_t>(std::floor((high[c] - low[c]) / spacing + 1e-9)));
-      sites *= n[index(c)];
+      points *= n[index(c)];
     }
   }
-  const std::vector<Vec<D>> all = grid_sites<D>(low, high, n);
+  const std::vector<Vec<D>> all = grid_points<D>(low, high, n);
   std::vector<Vec<D>> chosen;
-  for (std::int64_t k = 0; k < count; ++k) chosen.push_back(all[index(k * sites / count)]);
+  for (std::int64_t k = 0; k < count; ++k) chosen.push_back(all[index(k * points / count)]);
   return chosen;
 }
 
@@ -175,10 +175,10 @@ void place_walls(const SceneSettings<D>& settings, Particles<D>& particles) {
             : layer.count > 0
                 ? layer.count
                 : std::max<std::int64_t>(1, std::llround(settings.box.size[c] / layer.spacing));
-      for (Vec<D> site : grid_sites<D>(Vec<D>{}, settings.box.size, count)) {
+      for (Vec<D> point : grid_points<D>(Vec<D>{}, settings.box.size, count)) {
         const double from_end = wall.thickness - layer.depth;
-        site[wall.axis] = wall.high ? settings.box.size[wall.axis] - from_end : from_end;
-        particles.add(site, wall.species, Group::wall(static_cast<std::int32_t>(w)));
+        point[wall.axis] = wall.high ? settings.box.size[wall.axis] - from_end : from_end;
+        particles.add(point, wall.species, Group::wall(static_cast<std::int32_t>(w)));
       }
     }
   }

@@ -158,15 +158,15 @@ template <int D>
 void join_images(const std::vector<Bond>& bonds, const Box<D>& box, Particles<D>& particles) {
   const std::vector<std::int32_t> index_of = particles.index_of_id();
   std::vector<std::vector<std::size_t>> partners(index_of.size());
-  const auto place = [&](std::int64_t id) { return index(index_of[index(id)]); };
+  const auto at = [&](std::int64_t id) { return index(index_of[index(id)]); };
   for (const Bond& bond : bonds) {
-    partners[place(bond.i)].push_back(place(bond.j));
-    partners[place(bond.j)].push_back(place(bond.i));
+    partners[at(bond.i)].push_back(at(bond.j));
+    partners[at(bond.j)].push_back(at(bond.i));
   }
   std::vector<char> joined(index_of.size(), 0);
   for (const Bond& bond : bonds) {
     std::queue<std::size_t> waiting;
-    if (joined[place(bond.i)] == 0) waiting.push(place(bond.i));
+    if (joined[at(bond.i)] == 0) waiting.push(at(bond.i));
     for (; !waiting.empty(); waiting.pop()) {
       const std::size_t i = waiting.front();
       joined[i] = 1;

@@ -12,7 +12,7 @@ namespace odpd {
 
 namespace {
 
-// Particles of a start file, by their places in it.
+// Particles of a start file, by their order in it.
 template <int D>
 struct StartParticles {
   const SceneSettings<D>& settings;

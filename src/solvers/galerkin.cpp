@@ -110,11 +110,11 @@ void Elements<D>::add_to(GridOperator<D>& a) const {
         point[i] += (n >> c) % 2;
         if (shape_.periodic[i]) point[i] %= shape_.points(c);
       }
-      const std::int64_t place = shape_.place(point);
+      const std::int64_t number = shape_.number_of(point);
       for (int m = 0; m < corners; ++m) {
         int entry = 0, unit = 1;
         for (int c = 0; c < D; ++c, unit *= 3) entry += unit * ((m >> c) % 2 - (n >> c) % 2 + 1);
-        float* const block = a.block(place, entry);
+        float* const block = a.block(number, entry);
         for (int k = 0; k < triangle; ++k) block[16 * k] += sum[element_place<D>(k, n, m)];
       }
     }

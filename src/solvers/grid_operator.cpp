@@ -52,15 +52,14 @@ GridOperator<D>::GridOperator(const GridShape<D>& shape) : shape_(shape) {
 }
 
 template <int D>
-const float* GridOperator<D>::block(std::int64_t place, int entry) const {
+const float* GridOperator<D>::block(std::int64_t n, int entry) const {
   return blocks_.data() +
-         ((place / group) * GridShape<D>::entries + entry) * GridShape<D>::triangle * group +
-         place % group;
+         ((n / group) * GridShape<D>::entries + entry) * GridShape<D>::triangle * group + n % group;
 }
 
 template <int D>
-float* GridOperator<D>::block(std::int64_t place, int entry) {
-  return const_cast<float*>(std::as_const(*this).block(place, entry));
+float* GridOperator<D>::block(std::int64_t n, int entry) {
+  return const_cast<float*>(std::as_const(*this).block(n, entry));
 }
 
 template <int D>
@@ -71,8 +70,8 @@ std::int64_t GridOperator<D>::bytes() const {
 template <int D>
 void GridOperator<D>::set_up_smoother() {
   for_each_point(shape_, [&](const auto& point) {
-    const std::int64_t place = shape_.place(point);
-    const float* const centre = block(place, GridShape<D>::entries / 2);
+    const std::int64_t n = shape_.number_of(point);
+    const float* const centre = block(n, GridShape<D>::entries / 2);
     std::array<double, index(D * D)> m{};
     double trace = 0.0;
     int k = 0;
@@ -83,7 +82,7 @@ void GridOperator<D>::set_up_smoother() {
     for (std::size_t row = 0; row < D; ++row) m[row * D + row] += regularisation * trace / D;
     if (!(trace > 0.0) || !invert_definite(m, D)) return;
     float* const inverse =
-        inverse_.data() + (place / group) * GridShape<D>::triangle * group + place % group;
+        inverse_.data() + (n / group) * GridShape<D>::triangle * group + n % group;
     k = 0;
     for (std::size_t row = 0; row < D; ++row)
       for (std::size_t col = row; col < D; ++col, ++k)
@@ -106,10 +105,10 @@ double GridOperator<D>::largest_eigenvalue() const {
     v->fill(0.0F);
   }
   for_each_point(shape_, [&](const auto& point) {
-    const std::int64_t place = shape_.place(point);
+    const std::int64_t n = shape_.number_of(point);
     for (int c = 0; c < D; ++c)
-      first(x.data())[c * shape_.pitch() + place] =
-          static_cast<float>(std::sin(static_cast<double>(1 + place * D + c) * 12.9898));
+      first(x.data())[c * shape_.pitch() + n] =
+          static_cast<float>(std::sin(static_cast<double>(1 + n * D + c) * 12.9898));
   });
   double largest = 1.0;
   for (int k = 0; k < power_iterations; ++k) {
@@ -117,9 +116,9 @@ double GridOperator<D>::largest_eigenvalue() const {
     relax(x.data(), zero.data(), d.data(), y.data(), {0.0F, -1.0F});
     double before = 0.0, after = 0.0;
     for_each_point(shape_, [&](const auto& point) {
-      const std::int64_t place = shape_.place(point);
+      const std::int64_t n = shape_.number_of(point);
       for (int c = 0; c < D; ++c) {
-        const auto at = c * shape_.pitch() + place;
+        const auto at = c * shape_.pitch() + n;
         before +=
             static_cast<double>(first(x.data())[at]) * static_cast<double>(first(x.data())[at]);
         after +=
@@ -257,7 +256,7 @@ GridOperator<D> GridOperator<D>::coarsened() const {
   std::vector<Stencil> sums(index(coarse.shape_.points()));
   Stencil from{};
   for_each_point(shape_, [&](const auto& fine) {
-    const float* const blocks = block(shape_.place(fine), 0);
+    const float* const blocks = block(shape_.number_of(fine), 0);
     for (std::size_t n = 0; n < entries; ++n)
       for (std::size_t k = 0; k < triangle; ++k) from[n][k] = blocks[(n * triangle + k) * group];
     for (std::size_t side = 0; side < entries; ++side) {
@@ -275,7 +274,7 @@ GridOperator<D> GridOperator<D>::coarsened() const {
   std::size_t number = 0;
   for_each_point(coarse.shape_, [&](const auto& point) {
     const Stencil& sum = sums[number++];
-    float* const into = coarse.block(coarse.shape_.place(point), 0);
+    float* const into = coarse.block(coarse.shape_.number_of(point), 0);
     for (std::size_t n = 0; n < entries; ++n)
       for (std::size_t k = 0; k < triangle; ++k) into[(n * triangle + k) * group] = sum[n][k];
   });

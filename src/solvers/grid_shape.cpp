@@ -32,7 +32,7 @@ std::int64_t GridShape<D>::points() const {
 }
 
 template <int D>
-std::int64_t GridShape<D>::place(const Index& point) const {
+std::int64_t GridShape<D>::number_of(const Index& point) const {
   std::int64_t p = origin_;
   for (int c = 0; c < D; ++c) p += point[at(c)] * stride_[at(c)];
   return p;

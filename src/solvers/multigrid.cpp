@@ -49,24 +49,24 @@ template <int D>
 void Multigrid<D>::set_up_dense() {
   const GridOperator<D>& a = levels_.back().a;
   const GridShape<D>& shape = a.shape();
-  dense_places_.clear();
+  dense_points_.clear();
   std::vector<std::int64_t> number(index(shape.total()), -1);
   for_each_point(shape, [&](const auto& point) {
-    const std::int64_t place = shape.place(point);
-    const float* const centre = a.block(place, GridShape<D>::entries / 2);
+    const std::int64_t n = shape.number_of(point);
+    const float* const centre = a.block(n, GridShape<D>::entries / 2);
     double trace = 0.0;
     int k = 0;
     for (int row = 0; row < D; ++row)
       for (int col = row; col < D; ++col, ++k)
         if (row == col) trace += static_cast<double>(centre[k * 16]);
     if (!(trace > 0.0)) return;  // no particle near it
-    number[index(place)] = static_cast<std::int64_t>(dense_places_.size());
-    dense_places_.push_back(place);
+    number[index(n)] = static_cast<std::int64_t>(dense_points_.size());
+    dense_points_.push_back(n);
   });
-  const auto n = static_cast<Eigen::Index>(dense_places_.size()) * D;
+  const auto n = static_cast<Eigen::Index>(dense_points_.size()) * D;
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(n, n);
   for_each_point(shape, [&](const auto& point) {
-    const std::int64_t row_number = number[index(shape.place(point))];
+    const std::int64_t row_number = number[index(shape.number_of(point))];
     if (row_number < 0) return;
     for (int entry = 0; entry < GridShape<D>::entries; ++entry) {
       auto other = point;
@@ -80,9 +80,9 @@ void Multigrid<D>::set_up_dense() {
           inside = inside && other[i] >= 0 && other[i] < shape.points(c);
       }
       if (!inside) continue;
-      const std::int64_t col_number = number[index(shape.place(other))];
+      const std::int64_t col_number = number[index(shape.number_of(other))];
       if (col_number < 0) continue;
-      const float* const block = a.block(shape.place(point), entry);
+      const float* const block = a.block(shape.number_of(point), entry);
       int k = 0;
       for (int row = 0; row < D; ++row)
         for (int col = row; col < D; ++col, ++k) {
@@ -123,13 +123,13 @@ void Multigrid<D>::solve_dense() {
   const GridShape<D>& shape = level.a.shape();
   const std::int64_t n = dense_b_.size();
   const auto at = [&](FloatArray& v, std::size_t k, int c) -> float& {
-    return v.data()[shape.margin() + c * shape.pitch() + dense_places_[k]];
+    return v.data()[shape.margin() + c * shape.pitch() + dense_points_[k]];
   };
-  for (std::size_t k = 0; k < dense_places_.size(); ++k)
+  for (std::size_t k = 0; k < dense_points_.size(); ++k)
     for (int c = 0; c < D; ++c)
       dense_b_.data()[static_cast<std::int64_t>(k) * D + c] = at(level.b, k, c);
   multilevel_kernels().dense(dense_inverse_.data(), n, dense_b_.data(), dense_x_.data());
-  for (std::size_t k = 0; k < dense_places_.size(); ++k)
+  for (std::size_t k = 0; k < dense_points_.size(); ++k)
     for (int c = 0; c < D; ++c)
       at(level.x, k, c) = dense_x_.data()[static_cast<std::int64_t>(k) * D + c];
 }
@@ -160,7 +160,8 @@ void Multigrid<D>::restrict_residual(std::size_t level) {
         }
       }
     }
-    const std::int64_t from = f.margin() + f.place(centre), into = s.margin() + s.place(point);
+    const std::int64_t from = f.margin() + f.number_of(centre),
+                       into = s.margin() + s.number_of(point);
     for (int c = 0; c < D; ++c) {
       const float* const r = fine.r.data() + from + c * f.pitch();
       float sum = 0.0F;
@@ -192,7 +193,8 @@ void Multigrid<D>::add_correction(std::size_t level) {
       for (std::size_t k = 0; k < count; ++k) offset[count + k] = offset[k] + s.stride(c);
       count *= 2;
     }
-    const std::int64_t from = s.margin() + s.place(lower), into = f.margin() + f.place(point);
+    const std::int64_t from = s.margin() + s.number_of(lower),
+                       into = f.margin() + f.number_of(point);
     for (int c = 0; c < D; ++c) {
       const float* const x = coarse.x.data() + from + c * s.pitch();
       float sum = 0.0F;

@@ -114,7 +114,7 @@ void Multilevel<D>::place_nodes(const Resistance<D>& resistance, const SlicedRow
       GridPosition<D> at{};
       if (node >= 0) at = locate(shape, grid_position(resistance, index(node)).x.data());
       for (std::size_t c = 0; c < D; ++c) out[c] = at.in_cell[c];
-      const std::int64_t base = shape.place(at.cell) * SlicedRows<D>::stride;
+      const std::int64_t base = shape.number_of(at.cell) * SlicedRows<D>::stride;
       out[3] = std::bit_cast<float>(static_cast<std::int32_t>(base));
       begin = std::min(begin, base);
       end = std::max(end, base + reach);
@@ -178,22 +178,20 @@ double Multilevel<D>::cycle() {
   }
   float* const b = grid_.b();
   for_each_point(shape, [&](const auto& point) {
-    const std::int64_t place = shape.place(point);
-    for (int c = 0; c < D; ++c)
-      b[c * shape.pitch() + place] = sum[place * SlicedRows<D>::stride + c];
+    const std::int64_t n = shape.number_of(point);
+    for (int c = 0; c < D; ++c) b[c * shape.pitch() + n] = sum[n * SlicedRows<D>::stride + c];
   });
   grid_.cycle();
   const float* const x = grid_.x();
   double work = 0.0;
   for_each_point(shape, [&](const auto& point) {
-    const std::int64_t place = shape.place(point);
+    const std::int64_t n = shape.number_of(point);
     for (int c = 0; c < D; ++c)
-      work += static_cast<double>(b[c * shape.pitch() + place]) *
-              static_cast<double>(x[c * shape.pitch() + place]);
+      work += static_cast<double>(b[c * shape.pitch() + n]) *
+              static_cast<double>(x[c * shape.pitch() + n]);
   });
-  for (std::int64_t place = 0; place < shape.total(); ++place)
-    for (int c = 0; c < D; ++c)
-      sum[place * SlicedRows<D>::stride + c] = x[c * shape.pitch() + place];
+  for (std::int64_t n = 0; n < shape.total(); ++n)
+    for (int c = 0; c < D; ++c) sum[n * SlicedRows<D>::stride + c] = x[c * shape.pitch() + n];
   return work;
 }
 

@@ -96,7 +96,7 @@ TYPED_TEST(BondedEnergyTest, OfATrialMoveIsThatOfTheEdges) {
       const Vec<D> from = particles.position[i];
       Vec<D> to = from + support::uniform_vec<D>(0.07);
       box.wrap(to);
-      local.place();
+      local.sort_in();
       const auto self = static_cast<std::int32_t>(i);
       const double change = local.change({&self, 1}, {&to, 1});
       const double before = energy();

@@ -29,7 +29,7 @@ TYPED_TEST(DensityMoves, ChangeTheTotalEnergyByTheirLocalChange) {
     const ToyModel<D> model({.c = 0.8, .pair = 3.0});
     const NoSurroundings<D> nothing;
     LocalEnergy<D> local(crowd.box, model, nothing, particles);
-    local.place();
+    local.sort_in();
     const DofMap<D> dofs(particles);
     const auto to = support::random_points<D>({}, crowd.box.size, 120, 9);
     double energy = crowd.energy(model);
@@ -83,7 +83,7 @@ TYPED_TEST(DensityMoves, OfBondedParticles) {
                                {{3, 8, {.H = 7.0, .r_0 = 0.2, .exclude = exclude}}});
     const NoSurroundings<D> nothing;
     LocalEnergy<D> local(crowd.box, model, nothing, crowd.particles);
-    local.place();
+    local.sort_in();
     crowd.connect(model);
     const double energy = crowd.network.energy();
     Vec<D> to = crowd.particles.position[i] + support::uniform_vec<D>(0.07);
@@ -104,7 +104,7 @@ TYPED_TEST(DensityMoves, OfTwoFreeParticlesAtOnceAreRefused) {
   const ToyModel<D> model({});
   const NoSurroundings<D> nothing;
   LocalEnergy<D> local(crowd.box, model, nothing, crowd.particles);
-  local.place();
+  local.sort_in();
   const std::vector<std::int32_t> two{3, 4};
   const std::vector<Vec<D>> to(2, support::uniform_vec<D>(1.0));
   support::expect_error<ConfigError>([&] { local.change(two, to); }, {"one body"});

@@ -90,7 +90,7 @@ TYPED_TEST(MonteCarloTest, AMoveChangesTheTotalEnergyByItsLocalChange) {
     Toy<D> toy(edge, 60);
     toy.trap.stiffness = 3.0;
     LocalEnergy<D> local(toy.box, toy.model, toy.trap, toy.particles);
-    local.place();
+    local.sort_in();
     const auto targets = support::random_points<D>(Vec<D>{}, toy.box.size, 60, 9);
     double energy = total_energy(toy);
     for (std::size_t i = 0; i < targets.size(); ++i) {

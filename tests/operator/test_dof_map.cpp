@@ -28,7 +28,7 @@ TYPED_TEST(DofMapTest, NodesAreTheFreeParticlesInOrder) {
   EXPECT_EQ(dofs.particles(), 6);
   EXPECT_EQ(dofs.unknowns(), 3 * D);
   const std::vector<std::int32_t> node{0, -1, 1, -1, -1, 2};
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(dofs.site_of(i), node[i]);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(dofs.mobile_of(i), node[i]);
   const std::vector<std::int32_t> particle{0, 2, 5};
   for (std::size_t n = 0; n < 3; ++n) EXPECT_EQ(dofs.particle_of(n), particle[n]);
 }

@@ -55,9 +55,9 @@ TYPED_TEST(Grid, NeighboursLieAtFixedOffsets) {
     auto right = point;
     ++right[0];
     const int entry = GridShape<D>::entries / 2 + 1;
-    EXPECT_EQ(shape.place(right), shape.place(point) + shape.entry_offset(entry));
-    EXPECT_GE(shape.place(point), 0);
-    EXPECT_LT(shape.place(point), shape.total());
+    EXPECT_EQ(shape.number_of(right), shape.number_of(point) + shape.entry_offset(entry));
+    EXPECT_GE(shape.number_of(point), 0);
+    EXPECT_LT(shape.number_of(point), shape.total());
   });
   EXPECT_EQ(count, shape.points());
 }
@@ -86,7 +86,7 @@ double energy_of(const GridOperator<D>& a, const PointValues<D>& values) {
     f->fill(0.0F);
   }
   const auto at = [&](odpd::FloatArray& f, const auto& point, int c) -> float& {
-    return f.data()[shape.margin() + c * shape.pitch() + shape.place(point)];
+    return f.data()[shape.margin() + c * shape.pitch() + shape.number_of(point)];
   };
   std::size_t k = 0;
   odpd::for_each_point(shape, [&](const auto& point) {
@@ -264,12 +264,12 @@ std::vector<float> cycled(odpd::Multigrid<D>& grid, const std::vector<float>& b)
   const GridShape<D>& shape = grid.finest().shape();
   std::size_t k = 0;
   odpd::for_each_point(shape, [&](const auto& point) {
-    for (int c = 0; c < D; ++c) grid.b()[c * shape.pitch() + shape.place(point)] = b[k++];
+    for (int c = 0; c < D; ++c) grid.b()[c * shape.pitch() + shape.number_of(point)] = b[k++];
   });
   grid.cycle();
   std::vector<float> x;
   odpd::for_each_point(shape, [&](const auto& point) {
-    for (int c = 0; c < D; ++c) x.push_back(grid.x()[c * shape.pitch() + shape.place(point)]);
+    for (int c = 0; c < D; ++c) x.push_back(grid.x()[c * shape.pitch() + shape.number_of(point)]);
   });
   return x;
 }
@@ -316,13 +316,13 @@ TYPED_TEST(Grid, TheCycleIsASymmetricNearInverse) {
       std::size_t i = 0;
       odpd::for_each_point(shape, [&](const auto& point) {
         for (int c = 0; c < D; ++c)
-          in.data()[shape.margin() + c * shape.pitch() + shape.place(point)] = x[i++];
+          in.data()[shape.margin() + c * shape.pitch() + shape.number_of(point)] = x[i++];
       });
       grid.finest().residual(zero.data(), in.data(), out.data());
       i = 0;
       odpd::for_each_point(shape, [&](const auto& point) {
         for (int c = 0; c < D; ++c)
-          r[i++] += out.data()[shape.margin() + c * shape.pitch() + shape.place(point)];
+          r[i++] += out.data()[shape.margin() + c * shape.pitch() + shape.number_of(point)];
       });
     }
     EXPECT_LT(inner(r, cycled(grid, r)), 0.05 * before)

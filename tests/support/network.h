@@ -63,8 +63,8 @@ std::vector<double> dense_resistance(const odpd::PairNetwork<D>& network,
   std::vector<double> matrix(n * n, 0.0);
   for (std::size_t k = 0; k < n; ++k) matrix[k * n + k] = shift;
   for (std::size_t k = 0; k < static_cast<std::size_t>(network.size()); ++k) {
-    const std::int32_t i = dofs.site_of(static_cast<std::size_t>(network.i[k]));
-    const std::int32_t j = dofs.site_of(static_cast<std::size_t>(network.j[k]));
+    const std::int32_t i = dofs.mobile_of(static_cast<std::size_t>(network.i[k]));
+    const std::int32_t j = dofs.mobile_of(static_cast<std::size_t>(network.j[k]));
     add_block(network, k, 1.0, i, i, n, matrix);
     add_block(network, k, 1.0, j, j, n, matrix);
     add_block(network, k, -1.0, i, j, n, matrix);

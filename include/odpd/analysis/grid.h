@@ -46,7 +46,7 @@ struct Grid {
     for (int b = 0; b < c; ++b) s *= count(b);
     return s;
   }
-  std::int64_t place(std::size_t cell, int c) const {
+  std::int64_t coordinate(std::size_t cell, int c) const {
     return static_cast<std::int64_t>(cell) / stride(c) % count(c);
   }
 

@@ -30,8 +30,8 @@ enum class Stream : std::uint64_t {
   /// Trial moves (sweep, 0, id, 0): D displacements, acceptance. Of bodies (sweep, 1, body, 0), their turns
   /// (sweep, 2, body, 0).
   monte_carlo = 8,
-  body_poses = 9,  ///< places and orientations of bodies (attempt, 0 or 1, body, 0)
-  /// Places of molecules (attempt, 0, molecule, 0), turns (attempt, 1, molecule, 0), steps of a walk
+  body_poses = 9,  ///< positions and orientations of bodies (attempt, 0 or 1, body, 0)
+  /// Positions of molecules (attempt, 0, molecule, 0), turns (attempt, 1, molecule, 0), steps of a walk
   /// (attempt, 2 + trial, molecule, bead).
   molecules = 12,
 };

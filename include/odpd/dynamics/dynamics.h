@@ -109,8 +109,8 @@ class Dynamics {
   double inertia(double dt) const { return 2.0 * constants_.mass / dt; }
   bool has_mass() const { return constants_.mass > 0.0; }
 
-  /// R on the sites: free particles and constituents.
-  const Resistance<D>& resistance() const { return resistance_.sites(); }
+  /// R on the mobile particles: free particles and constituents.
+  const Resistance<D>& resistance() const { return resistance_.mobile(); }
   const PairList<D>& pair_list() const { return list_; }
   const DofMap<D>& dofs() { return motion_.dofs(); }
   Solver& solver() { return *solver_; }

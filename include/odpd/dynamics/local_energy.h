@@ -18,13 +18,13 @@ namespace odpd {
 template <int D>
 class LocalEnergy {
  public:
-  /// References must outlive this object; the number of particles stays. `place` before use.
+  /// References must outlive this object; the number of particles stays. `sort_in` before use.
   LocalEnergy(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& surroundings,
               const Particles<D>& particles);
 
   /// Sorts all particles into their cells and sums their densities. Sums come out in an order fixed by positions and memory
   /// order from here on.
-  void place();
+  void sort_in();
   /// Energy change when `moved` go to these positions (inside the box along periodic directions): one particle, or constituents
   /// of one body, which stay as far from each other as they are. Throws ConfigError for others.
   double change(std::span<const std::int32_t> moved, std::span<const Vec<D>> to);

@@ -94,7 +94,7 @@ class PairList {
   std::int64_t rebuilds_ = 0;
   CellList<D> cells_;
   std::array<std::vector<double>, index(D)> x_;  // in the order of the cells
-  std::vector<std::int32_t> index_;              // place in memory, likewise
+  std::vector<std::int32_t> index_;              // index in memory, likewise
   std::vector<Row> row_;
   std::vector<std::vector<std::int32_t>> found_;  // rows of a chunk of cells
   std::vector<std::int64_t> found_pairs_;

@@ -6,7 +6,7 @@
 //   v_k = V + X(a_k) w,   X(a) w = w x a,   a_k the arm of constituent k
 //
 // *Nodes* are the groups of D unknowns that solvers see: w of each body (in 2D with one unused component), then the free
-// particles in memory order, then V of each body. A translation moves all but the first of these. *Sites* are the particles
+// particles in memory order, then V of each body. A translation moves all but the first of these. *Mobile* are the particles
 // that move: free ones and constituents, in memory order.
 #include <cstdint>
 #include <span>
@@ -33,22 +33,22 @@ class DofMap {
   /// Rigid bodies whose motion is unknown: the first of them all.
   std::int64_t bodies() const { return static_cast<std::int64_t>(unknown_); }
 
-  std::int64_t sites() const { return site_map().nodes(); }
-  /// Site of a particle, -1 when its velocity is known.
-  std::int32_t site_of(std::size_t particle) const { return site_map().node_of(particle); }
-  std::int32_t particle_of(std::size_t site) const { return site_map().particle_of(site); }
+  std::int64_t mobile() const { return mobile_map().nodes(); }
+  /// Number of a particle among the mobile ones, -1 when its velocity is known.
+  std::int32_t mobile_of(std::size_t particle) const { return mobile_map().node_of(particle); }
+  std::int32_t particle_of(std::size_t row) const { return mobile_map().particle_of(row); }
   /// Particles of the free nodes, ascending; free_particles()[k] is node free_node(k).
   std::span<const std::int32_t> free_particles() const { return free_.node_particles(); }
   std::size_t free_node(std::size_t k) const { return unknown_ + k; }
-  /// Constituents of body b, of known motion or not, as places in memory.
+  /// Constituents of body b, of known motion or not, as indices in memory.
   std::span<const std::int32_t> constituents(std::size_t b) const { return body_[b]; }
   /// Node of V of body b; that of its w is b.
   std::size_t body_node(std::size_t b) const { return unknown_ + index(free_.nodes()) + b; }
 
   /// The nodes of this rank: those of its free particles, of the first rank also the w of all bodies, of the last their V.
   Share share() const;
-  /// Likewise the sites of its particles.
-  Share site_share() const { return run_of(site_map().node_particles()); }
+  /// Likewise its mobile particles.
+  Share mobile_share() const { return run_of(mobile_map().node_particles()); }
 
   // `arms`: one per particle, zero but for constituents; empty where there are no bodies.
 
@@ -65,10 +65,10 @@ class DofMap {
  private:
   /// Where this rank's particles stand among these, which ascend.
   Share run_of(std::span<const std::int32_t> particles) const;
-  const NodeMap& site_map() const { return unknown_ == 0 ? free_ : sites_; }
+  const NodeMap& mobile_map() const { return unknown_ == 0 ? free_ : mobile_; }
 
   NodeMap free_;
-  NodeMap sites_;  // empty without bodies of unknown motion: the same as free_
+  NodeMap mobile_;  // empty without bodies of unknown motion: the same as free_
   std::vector<std::vector<std::int32_t>> body_;
   std::size_t unknown_ = 0;  // bodies
   Share owned_;              // particles

@@ -19,18 +19,19 @@ class Resistance;
 /// A group of particles and how many motions of it are free.
 struct FreeGroup {
   std::int64_t particles = 0;
-  std::int32_t first = 0;  ///< one of them, as a place in memory
+  std::int32_t first = 0;  ///< one of them, as an index in memory
   std::int64_t motions = 0;
 };
 
 struct FreeMotions {
-  std::vector<FreeGroup>
-      groups;  ///< with at least one free motion, in the order of their first sites
-  std::vector<std::vector<double>> basis;  ///< orthonormal vectors of unknowns, group by group
+  /// With at least one free motion, in the order of their first particles.
+  std::vector<FreeGroup> groups;
+  /// Orthonormal vectors of unknowns, group by group.
+  std::vector<std::vector<double>> basis;
 };
 
 /// All of them, but for translations where nothing has a known velocity: System::translations has those. `parent`: a forest
-/// over the sites whose trees are the groups; without known velocities there is one. `arms`: as for DofMap.
+/// over the mobile particles whose trees are the groups; without known velocities there is one. `arms`: as for DofMap.
 /// A fluid that fills its box, or that walls hold, is told from some links; else all links are looked at.
 template <int D>
 FreeMotions free_motions(const Resistance<D>& resistance, const DofMap<D>& dofs,

@@ -88,7 +88,7 @@ class BondedModel : public PairModel<D> {
                   std::span<const Vec<D>> positions, const Particles<D>& particles, std::size_t k,
                   PairNetwork<D>& network) const;
 
-  std::vector<Vec<D>> places_of(const SiteFrame<D>& frame, const Box<D>& box,
+  std::vector<Vec<D>> points_of(const SiteFrame<D>& frame, const Box<D>& box,
                                 std::span<const Vec<D>> positions,
                                 const Particles<D>& particles) const;
   double frame_energy(std::int64_t id, const Vec<D>& r, const Box<D>& box,

@@ -29,19 +29,19 @@ namespace odpd {
 
 template <int D>
 struct SiteFrame {
-  std::int64_t first = 0;     ///< its particles are the identities first, first + 1, ...
-  std::size_t bond = 0;       ///< place of its bonds among all: (0, 1), (0, 2), ..., (1, 2), ...
+  std::int64_t first = 0;  ///< its particles are the identities first, first + 1, ...
+  std::size_t bond = 0;    ///< number of its first bond among all: (0, 1), (0, 2), ..., (1, 2), ...
   std::vector<Vec<D>> sites;  ///< b_k (length)
   double H = 0.0;             ///< stiffness of each spring (force/length)
 
   std::size_t bonds() const { return sites.size() * (sites.size() - 1) / 2; }
 };
 
-/// The frame at its balance with particles at `places` (any origin): r_k - X and Q b_k.
+/// The frame at its balance with particles at `points` (any origin): r_k - X and Q b_k.
 template <int D>
 struct BalancedFrame {
   std::vector<Vec<D>> arms, sites;
-  BalancedFrame(const SiteFrame<D>& frame, std::span<const Vec<D>> places);
+  BalancedFrame(const SiteFrame<D>& frame, std::span<const Vec<D>> points);
   /// sum_k |r_k - X - Q b_k|^2 (length squared).
   double distance_squared() const;
 };
@@ -50,7 +50,7 @@ struct BalancedFrame {
 /// Throws BlowUpError where the frame may turn freely: for particles on a line (3D), in one point, or the mirror image of a
 /// simplex.
 template <int D>
-void write_frame(const SiteFrame<D>& frame, std::span<const Vec<D>> places, std::size_t edge,
+void write_frame(const SiteFrame<D>& frame, std::span<const Vec<D>> points, std::size_t edge,
                  PairNetwork<D>& network);
 
 }  // namespace odpd

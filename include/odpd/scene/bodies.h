@@ -19,7 +19,7 @@ struct BodySettings {
   std::vector<Vec<D>> shape;  ///< constituents, about their centre (length)
   BodyMotion motion = BodyMotion::free;
   std::int32_t species = 0;
-  std::int64_t count = 1;         ///< at random places, where there are no `positions`
+  std::int64_t count = 1;         ///< at random positions, where there are no `positions`
   std::vector<Vec<D>> positions;  ///< of the centres (length)
   double clearance = 1.0;         ///< free space around a body placed at random (length)
   RigidMotion<D> velocity;        ///< for BodyMotion::given

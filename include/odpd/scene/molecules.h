@@ -27,7 +27,7 @@ struct MoleculeSettings {
   std::vector<Link> bonds;
   double site_H =
       0.0;  ///< above 0: beads tied by such springs to a rigid frame of the shape (force/length)
-  std::int64_t count = 1;         ///< at random places, where there are no `positions`
+  std::int64_t count = 1;         ///< at random positions, where there are no `positions`
   std::vector<Vec<D>> positions;  ///< of the centres, the shape as it stands there (length)
 
   std::int64_t molecules() const {

@@ -1,5 +1,5 @@
 #pragma once
-// What a start file gives as the first lengths of bonds, and as places of particles tied to sites.
+// What a start file gives as the first lengths of bonds, and as positions of particles tied to sites.
 #include <vector>
 
 #include "odpd/scene/scene_settings.h"

@@ -41,8 +41,8 @@ struct GridShape {
   }  ///< floats to keep free before and after a vector
   /// Floats of one component of a grid vector, its margins included.
   std::int64_t pitch() const { return 2 * margin_ + 16 * groups(); }
-  /// Place of a point; -1 and points(c) name the ghosts of a periodic direction.
-  std::int64_t place(const Index& point) const;
+  /// Number of a point in arrays; -1 and points(c) name the ghosts of a periodic direction.
+  std::int64_t number_of(const Index& point) const;
   /// Offset of a stencil entry, x fastest, each direction -1, 0, 1.
   std::int64_t entry_offset(int entry) const;
   /// Offset of a corner of a cell from its lowest one, x fastest.

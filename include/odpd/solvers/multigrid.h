@@ -20,9 +20,9 @@ class GridOperator {
  public:
   explicit GridOperator(const GridShape<D>& shape);
   const GridShape<D>& shape() const { return shape_; }
-  /// Upper triangle of the block that couples the point at `place` with its neighbour `entry`, 16 floats apart.
-  float* block(std::int64_t place, int entry);
-  const float* block(std::int64_t place, int entry) const;
+  /// Upper triangle of the block that couples point number `n` with its neighbour `entry`, 16 floats apart.
+  float* block(std::int64_t n, int entry);
+  const float* block(std::int64_t n, int entry) const;
   /// To be called once the blocks are filled. Points without friction stay out of everything.
   void set_up_smoother();
   /// P^T A P on the coarser grid.
@@ -84,7 +84,7 @@ class Multigrid {
 
   bool null_translations_ = false;
   std::vector<Level> levels_;
-  std::vector<std::int64_t> dense_places_;
+  std::vector<std::int64_t> dense_points_;
   FloatArray dense_inverse_, dense_b_, dense_x_;
 };
 

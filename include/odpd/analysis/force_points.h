@@ -9,12 +9,12 @@ namespace odpd {
 
 /// Where forces count: at the particles, or, on constituents of bodies whose motion is unknown, at the centres of those.
 template <int D>
-class Places {
+class ForcePoints {
  public:
-  Places(const Particles<D>& particles, const Stage<D>& stage)
+  ForcePoints(const Particles<D>& particles, const Stage<D>& stage)
       : particles_(particles), stage_(stage) {}
   Vec<D> at(std::size_t i) const { return stage_.position[i] - arm(i); }
-  /// From the place of j to that of i.
+  /// From the point of j to that of i.
   Vec<D> between(const PairNetwork<D>& network, std::size_t k) const {
     const Vec<D> pair = network.r[k] * network.e[k];
     if (stage_.arms.empty()) return pair;
