@@ -15,12 +15,14 @@ class Thermometer : public odpd::Observer<2> {
   void measure(const odpd::Clock&, const odpd::Particles<2>& particles,
                const odpd::StepRecord<2>& record) override {
     double squared = 0.0, laplacian = 0.0;
-    for (const odpd::Vec<2>& force : record.start.potential_force) squared += dot(force, force);
+    const odpd::Share own = particles.owned();  // of several ranks each adds its own
+    for (const odpd::Vec<2>& force : own.part(std::span(record.start.potential_force), 1))
+      squared += dot(force, force);
     const odpd::PairNetwork<2>& edges = record.start.network;
     for (std::size_t k = 0; k < edges.r.size(); ++k)  // each edge counts at both its ends
-      laplacian += 2.0 * (edges.k_c[k] - edges.f_c[k] / edges.r[k]);
+      if (edges.counts(k)) laplacian += 2.0 * (edges.k_c[k] - edges.f_c[k] / edges.r[k]);
     const auto n = static_cast<double>(particles.size());
-    add({squared / n, laplacian / n});
+    add({own.ranks->sum(squared) / n, own.ranks->sum(laplacian) / n});
   }
   void add_results(odpd::Results& results) const override {
     Observer<2>::add_results(results);  // the means of the two columns
@@ -36,9 +38,7 @@ constexpr char equilibrium[] = R"(
   fluid = { density = 4.0, kT = 1.0, a = 18.5, gamma = 4.5 }
   integrator = { name = "trapezoidal", dt = 0.005 }
   run = { equilibrate = 2.0, duration = 20.0 }
-  [[observe]]
-  kind = "thermometer"
-  every = 2
+  observe = [{ kind = "thermometer", every = 2 }]
 )";
 
 int main() {

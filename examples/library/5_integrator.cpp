@@ -15,11 +15,10 @@ struct AdamsBashforth : odpd::Integrator<2> {
     begin(dynamics, clock);
     Unknowns v = dynamics.force(record_.start);
     dynamics.solve(record_.start, Unknowns(v), {}, v);
-    const Unknowns last = last_.empty() ? v : last_.unknowns(dynamics);
-    last_.keep(dynamics,
-               v);  // carried by the particles: their places in memory change now and then
+    const Unknowns now = v, last = last_.empty() ? v : last_.unknowns(dynamics);
     for (std::size_t k = 0; k < v.size(); ++k) v[k] = 1.5 * v[k] - 0.5 * last[k];
     finish(dynamics, clock, v, v);
+    last_.keep(dynamics, now);  // with the particles, whose places in memory change now and then
     return record_;
   }
   void prepare(odpd::Dynamics<2>& dynamics) override { last_.prepare(dynamics); }

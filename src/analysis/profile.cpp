@@ -46,8 +46,7 @@ void check_range(const Config& config, const ProfileSettings& p) {
   if (p.fit != ProfileFit::none)
     config.fail("fit",
                 "the surfaces are at most two cutoffs apart, so no part of the profile is one "
-                "cutoff clear of both: give "
-                "fit_from and fit_to, or leave out the fit");
+                "cutoff clear of both: give fit_from and fit_to, or leave out the fit");
 }
 
 }  // namespace
@@ -187,8 +186,7 @@ void Profile<D>::add_results(Results& results) const {
   if (!(profile_.fit_from < profile_.fit_to))
     results.notes.push_back(
         fmt::format("{}: the surfaces are at most two cutoffs apart, so walls order the fluid "
-                    "everywhere between them; a "
-                    "fit would need fit_from and fit_to",
+                    "everywhere between them; a fit would need fit_from and fit_to",
                     name));
   results.tables.emplace_back(name, t);
   results.charts.emplace_back(name + "_velocity", std::move(velocity));

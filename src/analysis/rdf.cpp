@@ -49,7 +49,9 @@ std::unique_ptr<Observer<D>> Rdf<D>::make(const ObserverEntry<D>& entry) {
         comparison->to > r_max)
       config.fail(
           config.has("compare_to") ? "compare_to" : "compare_from",
-          fmt::format("must be at least a bin above compare_from and at most r_max = {}", r_max));
+          fmt::format("compare_from = {} must be at least a bin below compare_to = {}, and that at "
+                      "most r_max = {}, its default",
+                      comparison->from, comparison->to, r_max));
   }
   return std::make_unique<Rdf<D>>(std::move(settings), r_max, bins, entry.scene, comparison);
 }
@@ -131,8 +133,7 @@ void Rdf<D>::add_results(Results& results) const {
   if (scene_.box().periodic_directions() < D)
     table.comment.emplace_back(
         "walls: g counts on full shells around every particle, also where a wall cuts them, so it "
-        "falls below 1 at large r: "
-        "compare it with that of the same channel only");
+        "falls below 1 at large r: compare it with that of the same channel only");
   table.columns = {"r"};
   Chart chart{.title = "Radial distribution function",
               .x_label = "r / r_c",

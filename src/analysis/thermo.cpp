@@ -126,8 +126,8 @@ void Thermo<D>::add_results(Results& results) const {
     results.scalars.push_back({temperature});
     results.notes.push_back(
         temperature +
-        " is undefined: the conservative force of some pair of species jumps at "
-        "its end, where its stiffness has no value");
+        " is undefined: the conservative force of some pair of species jumps at its end, where its "
+        "stiffness has no value. Let it go to 0 there, or enlarge its cutoff");
   } else {
     results.scalars.push_back(
         {temperature, this->average().ratio(2, 3), this->average().ratio_error(terms)});

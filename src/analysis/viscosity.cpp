@@ -194,8 +194,7 @@ std::unique_ptr<Observer<D>> Viscosity<D>::make(const ObserverEntry<D>& entry) {
     if (!(kind.from < kind.to))
       config.fail("kind",
                   "no part of the stream is one cutoff clear of both its ends, where the profile "
-                  "is fitted: make it "
-                  "wider than two cutoffs");
+                  "is fitted: make it wider than two cutoffs");
     if (fitted_bins(p, entry.scene) < 4)
       config.fail("bins", fmt::format("at least 4 bins with centres between {} and {} are needed: "
                                       "use more, or a wider stream",

@@ -38,9 +38,8 @@ std::string place_of(const ConfigOrigin& at) {
 /// A given key that nobody asked for and that looks like the missing `key`: most likely a slip.
 std::string likely_slip(const ConfigTable& table, const std::string& key) {
   std::vector<std::string> strangers;
-  for (const auto& [name, node] : table.members) {
+  for (const auto& [name, node] : table.members)
     if (node->given && !table.asked.contains(name)) strangers.push_back(name);
-  }
   const std::string near = nearest_name(key, strangers);
   if (near.empty()) return "";
   return fmt::format(", or correct '{}' ({})", near, place_of(table.find(near)->origin));
@@ -205,10 +204,9 @@ void reject_unread_below(const ConfigNode& node) {
   if (const ConfigTable* table = node.table()) {
     for (const auto& [key, below] : table->members) {
       if (!below->given) continue;
-      if (!below->read) {
+      if (!below->read)
         fail_at(*below, fmt::format("nothing in this case reads this {}; {}",
                                     below->table() ? "table" : "key", remedy(key, *table)));
-      }
       reject_unread_below(*below);
     }
   } else if (const ConfigArray* array = node.array()) {
@@ -237,6 +235,10 @@ Config Config::from_text(const std::string& text, const std::string& name,
 
 bool Config::has(const std::string& key) const {
   node_->table()->asked.insert(key);
+  return gives(key);
+}
+
+bool Config::gives(const std::string& key) const {
   const ConfigNode* node = node_->table()->find(key);
   return node && node->given;
 }

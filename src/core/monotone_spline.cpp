@@ -35,7 +35,7 @@ MonotoneSpline::MonotoneSpline(std::vector<double> x, const std::vector<double>&
   for (std::size_t k = 0; k + 1 < n; ++k) {
     width[k] = x_[k + 1] - x_[k];
     secant[k] = (y[k + 1] - y[k]) / width[k];
-    if (!(width[k] > 0.0) || !std::isfinite(secant[k]))
+    if (!(width[k] > 0.0) || !std::isfinite(width[k]) || !std::isfinite(secant[k]))
       throw ConfigError("the points of a spline must be finite, in ascending order of x");
   }
   buckets_per_length_ = static_cast<double>(n - 1) / (x_.back() - x_.front());

@@ -1,5 +1,7 @@
 #include "odpd/dynamics/integrator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "odpd/core/error.h"
@@ -70,6 +72,11 @@ void CarriedUnknowns<D>::save(StateWriter& out) const {
 template <int D>
 void CarriedUnknowns<D>::load(const StateReader& in) {
   empty_ = in.read_integers(name_ + "_kept").at(0) == 0;
+  if (!empty_ && !prepared_)
+    throw IoError(fmt::format(
+        "the checkpoint has '{}' of the integrator, which prepares nothing to take it: call "
+        "CarriedUnknowns::prepare in Integrator::prepare",
+        name_));
   bodies_ = in.read_doubles(name_ + "_bodies");
 }
 

@@ -67,7 +67,7 @@ DpdParameters read_physical_fluid(const Config& fluid, const PhysicalInputs& in,
 
 void refuse_physical_inputs(const Config& fluid, const std::string& model) {
   for (const char* key : {"eta", "Sc", "alpha", "kappa_inverse", "calibration"})
-    if (fluid.has(key))
+    if (fluid.gives(key))
       fluid.fail(key,
                  fmt::format("physical inputs and calibrations are of fluid.model = \"dpd\", this "
                              "fluid's is \"{}\": give the parameters of that model instead",

@@ -66,6 +66,7 @@ std::vector<double> values(const TextTable& csv) {
 }
 
 void validate(const TableParameters& p) {
+  if (p.force == nullptr) throw ConfigError("model \"table\": a pair of species has no table");
   validate(p.friction);
   const double cutoff = p.friction.cutoff, begin = p.force->points().front(),
                end = p.force->points().back();
@@ -98,9 +99,25 @@ TableParameters read_parameters(const Config& keys, const TableParameters& base,
 
 }  // namespace
 
+namespace {
+
+MonotoneSpline spline_of(const std::string& file, std::vector<double> r,
+                         const std::vector<double>& value) {
+  try {
+    return {std::move(r), value};
+  } catch (const ConfigError& e) {
+    throw ConfigError(fmt::format("{}: {}", file, e.what()));
+  }
+}
+
+}  // namespace
+
 ForceTable::ForceTable(std::string file, Values values, std::vector<double> r,
                        const std::vector<double>& value)
-    : file_(std::move(file)), end_(file_), values_(values), spline_(std::move(r), value) {
+    : file_(std::move(file)),
+      end_(file_),
+      values_(values),
+      spline_(spline_of(file_, std::move(r), value)) {
   if (points().front() < 0.0) throw ConfigError(fmt::format("{}: a distance must be >= 0", file_));
 }
 
@@ -174,11 +191,17 @@ void TableModel<D>::refuse_unknown(const PairNetwork<D>& network,
     if (network.u[k] < std::numeric_limits<double>::infinity()) continue;
     const std::size_t i = index(network.i[k]), j = index(network.j[k]);
     const Entry& of = entry(site_of(particles, i), site_of(particles, j));
+    const double high = of.first.u - of.last.u;
     throw BlowUpError(
-        fmt::format("particles {} and {} are {:.4g} apart, and {} begins at r = {}: begin it "
-                    "nearer, set the key force_below to \"constant\", or keep them apart by a "
-                    "smaller integrator.dt or another start",
-                    particles.id[i], particles.id[j], network.r[k], of.p.force->file(), of.begin),
+        fmt::format(
+            "particles {} and {} are {:.4g} apart, and {} begins at r = {}: begin it "
+            "nearer, set the key force_below to \"constant\", or {}",
+            particles.id[i], particles.id[j], network.r[k], of.p.force->file(), of.begin,
+            high > 10.0 * of.p.friction.kT
+                ? "keep them apart by a smaller integrator.dt or another start"
+                : fmt::format("raise its core: u is only {:.3g} there, so pairs come nearer "
+                              "at any integrator.dt",
+                              high)),
         particles.id[i]);
   }
 }

@@ -87,11 +87,9 @@ void read_amount(const Config& fluid, SceneSettings<D>& scene) {
     scene.count = fluid.integer("count");
     if (scene.count < 0) fluid.fail("count", "must be zero or positive");
     if (scene.count == 0 && scene.molecule_beads() == 0)
-      fluid.fail(
-          "count",
-          "is 0, so no particle moves freely: give some, or a [[molecule]] to have a melt "
-          "(a scene of bodies alone is not one: densities, energies and the watch over a run "
-          "are per free particle)");
+      fluid.fail("count",
+                 "is 0, so no particle moves freely: give some, or a [[molecule]] to have a melt "
+                 "(a scene of bodies alone is not one: densities are those of free particles)");
     return;
   }
   // What the start file must hold, or how many particles to place.

@@ -44,6 +44,7 @@ mv hidden.csv box/force.csv
 
 # --- bad keys and tables ---
 expect_error 1 run box --set fluid.a=1 -- fluid.a 'nothing in this case reads'
+expect test "$(grep -c -w eta "$err_text")" -eq 0 # no other model's keys are suggested
 expect_error 1 run box --set fluid.eta=1 -- fluid.eta 'model = "dpd"' table
 expect_error 1 run box --set fluid.force_below=zero -- fluid.force_below 'error, constant'
 expect_error 1 run dpd --set fluid.force_file=force.csv -- fluid.force_file

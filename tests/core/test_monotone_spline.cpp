@@ -114,6 +114,7 @@ TEST(MonotoneSpline, RefusesWhatIsNoTable) {
   EXPECT_THROW(MonotoneSpline({1.0, 1.0}, {1.0, 2.0}), odpd::ConfigError);
   EXPECT_THROW(MonotoneSpline({1.0, 0.5, 2.0}, {1.0, 2.0, 3.0}), odpd::ConfigError);
   EXPECT_THROW(MonotoneSpline({1.0, 2.0}, {1.0, inf}), odpd::ConfigError);
+  EXPECT_THROW(MonotoneSpline({0.0, 1.0, inf}, {1.0, 0.5, 0.0}), odpd::ConfigError);
   EXPECT_THROW(MonotoneSpline({1.0, 2.0}, {1.0, std::nan("")}), odpd::ConfigError);
 }
 

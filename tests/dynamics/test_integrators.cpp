@@ -177,6 +177,22 @@ TEST_P(Integrators, TheNameIsItsOwnAndItTakesThisMass) {
 INSTANTIATE_TEST_SUITE_P(All, Integrators, testing::ValuesIn(schemes()),
                          [](const auto& test) { return test.param.label; });
 
+// A column that nobody registered is not read from a checkpoint: what was kept would be zero from then on.
+TEST(CarriedUnknowns, AreNotLoadedUnprepared) {
+  Toy toy(ToySettings{});
+  odpd::CarriedUnknowns<2> kept("kept"), unprepared("kept");
+  support::MemoryArchive archive;
+  kept.prepare(*toy.dynamics);
+  kept.save(archive);
+  EXPECT_NO_THROW(unprepared.load(archive)) << "nothing was kept";
+  kept.keep(*toy.dynamics,
+            std::vector<double>(static_cast<std::size_t>(toy.dynamics->dofs().unknowns()), 1.0));
+  archive = {};
+  kept.save(archive);
+  EXPECT_NO_THROW(kept.load(archive));
+  EXPECT_THROW(unprepared.load(archive), odpd::IoError);
+}
+
 TEST(IntegratorTable, SchemesThatCannotTakeAMassSayWhichCan) {
   EXPECT_NE(mass_objection("euler", 1.0).find("trapezoidal"), std::string::npos);
   for (const char* name : {"setd", "velocity-verlet", "shardlow"})

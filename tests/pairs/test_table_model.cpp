@@ -141,6 +141,7 @@ TEST(TableModel, EveryPairOfSpeciesHasItsTable) {
   EXPECT_FALSE(TableModel<2>(1, {none}).conservative());
   EXPECT_THROW(TableModel<2>(2, {soft, hard, soft, none}), ConfigError);
   EXPECT_THROW(TableModel<2>(2, {soft, hard, hard}), ConfigError);
+  EXPECT_THROW(TableModel<2>(1, {TableParameters{}}), ConfigError) << "no table";
 }
 
 TEST(TableModel, IntegralsStopAtItsPoints) {

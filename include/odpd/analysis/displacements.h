@@ -29,8 +29,7 @@ class Displacements {
   bool add_sums(std::span<const double> sum, std::span<const double> population,
                 std::size_t components);
   /// The same from the coordinates: `width` of them per entity, unwrapped, entities in the same order every time; kind[n] < 0:
-  /// not counted.
-  /// `components` of the coordinates count.
+  /// not counted. `components` of the coordinates count.
   void add(std::vector<double> now, std::span<const std::int32_t> kind, std::size_t width,
            std::span<const int> components);
 

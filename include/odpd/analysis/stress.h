@@ -13,8 +13,8 @@
 // forces that hold it together then need not be known.
 //
 // V: the volume between the wall surfaces; of an edge that leaves it, the part of its line inside counts, and of the particles those
-// inside (analysis/fluid_region.h). In the same way with bins along an axis. Scalars <name>.xx, .xy, ... (all D^2), <name>.pressure = -trace/D and its parts
-// .pressure.kinetic, .conservative, .friction, .noise. At equilibrium friction and noise add nothing, as dt -> 0, and the pressure is
+// inside (analysis/fluid_region.h). In the same way with bins along an axis. Scalars <name>.xx, .xy, ... (all D^2),
+// <name>.pressure = -trace/D and its parts .pressure.kinetic, .conservative, .friction, .noise. At equilibrium friction and noise add nothing, as dt -> 0, and the pressure is
 // that of `thermo`. Schemes with one stage (euler, extrapolated, implicit) at mass 0 take friction before the motion alone: biased,
 // and a note says so.
 #include "odpd/analysis/observer.h"

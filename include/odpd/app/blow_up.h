@@ -10,7 +10,8 @@
 //                            of freedom: a flow common to both does not count, nor does a small system's scatter
 //   configurational          sum |F_i|^2 > b (kT (L + 3 S) + N_f F_u^2 + sum F_b^2) over the N_f free particles, L = sum lap_i U,
 //   temperature              S^2 = sum (lap_i U)^2, F_u the drag that the drive can cause on a particle; at equilibrium
-//                            <sum |F|^2> = kT <L>, and where particles lie at random L vanishes (soft repulsion: their energy is hardly raised then).
+//                            <sum |F|^2> = kT <L>, and where particles lie at random L vanishes (soft repulsion:
+//                            their energy is hardly raised then).
 //                            kT > 0 and f_c != 0 only. An unrelaxed start does not pass, or by chance, so this counts from the
 //                            first state on that is settled, sum |F_i|^2 <= 3 (kT L + N_f F_u^2 + sum F_b^2); after 50 times
 //                            the limit of explicit steps, in which soft particles find their places, from the first that passes

@@ -35,6 +35,8 @@ class Config {
 
   /// Whether the case gives `key`. Makes the name known, but does not count as reading it.
   bool has(const std::string& key) const;
+  /// The same of a key that nobody takes here: messages do not suggest it.
+  bool gives(const std::string& key) const;
 
   // Required values: ConfigError when missing, of another type, or not finite.
   double number(const std::string& key) const;  ///< a TOML integer is accepted as a number

@@ -12,9 +12,8 @@
 
 namespace odpd {
 
-/// Integrals of all components of f(r) (a std::array of N) over a < r < b. h is halved until they settle to about 14 digits, less those
-/// that a and b have in common, or at most to
-/// 1/2048, where f has a kink inside. What is not finite in f is so in the result.
+/// Integrals of all components of f(r) (a std::array of N) over a < r < b. h is halved until they settle to about 14 digits,
+/// less those that a and b have in common, or at most to 1/2048, where f has a kink inside. What is not finite in f is so in the result.
 template <std::size_t N, class Function>
 std::array<double, N> integrate(const Function& f, double a, double b) {
   using Values = std::array<double, N>;

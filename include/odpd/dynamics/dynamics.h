@@ -100,9 +100,9 @@ class Dynamics {
   /// Assembles A = P^T (R + K_pairs stiffness_time + K_bonds bond_time) P + zeta_0 + inertia at the stage.
   const System& assemble(const Stage<D>& stage, const StepWeights& weights);
   /// Solves A q = load for the stage's velocities: `guess` in, answer out. Throws SolverError when the solver did not
-  /// converge, and where forces from outside drive a null motion; BlowUpError when a velocity is not finite. Where nothing has a known velocity, the mean of the answer is
-  /// exact: with mass or drag, and no bodies, it is what momentum balance says; with neither it is 0, or under shear
-  /// that of the sheared flow.
+  /// converge, and where forces from outside drive a null motion; BlowUpError when a velocity is not finite. Where nothing
+  /// has a known velocity, the mean of the answer is exact: with mass or drag, and no bodies, it is what momentum balance
+  /// says; with neither it is 0, or under shear that of the sheared flow.
   void solve(Stage<D>& stage, const Unknowns& load, const StepWeights& weights, Unknowns& guess);
 
   /// M = 2 m/dt.

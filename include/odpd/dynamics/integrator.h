@@ -71,17 +71,21 @@ class CarriedUnknowns {
   explicit CarriedUnknowns(std::string name) : name_(std::move(name)) {}
   /// Nothing was kept yet.
   bool empty() const { return empty_; }
-  void prepare(Dynamics<D>& dynamics) { dynamics.particles().carry(name_); }
+  /// The particles carry the column from now on. Before anything is kept or loaded.
+  void prepare(Dynamics<D>& dynamics) {
+    dynamics.particles().carry(name_);
+    prepared_ = true;
+  }
   void keep(Dynamics<D>& dynamics, const std::vector<double>& q);
   /// In the present order of the unknowns. Throws IoError where a checkpoint held those of other bodies.
   std::vector<double> unknowns(Dynamics<D>& dynamics) const;
-  /// All but the column.
+  /// All but the column. Throws IoError where something was kept and `prepare` was not called: the column was not loaded.
   void save(StateWriter& out) const;
   void load(const StateReader& in);
 
  private:
   std::string name_;
-  bool empty_ = true;
+  bool empty_ = true, prepared_ = false;
   std::vector<double> bodies_;  // w of each, then V of each, D numbers
 };
 

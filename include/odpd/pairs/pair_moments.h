@@ -30,7 +30,8 @@ struct PairMoments {
   double force = 0.0, stiffness = 0.0;  ///< |f_c|, and k above
   double zeta_par = 0.0, zeta_perp = 0.0;
   double force_range = 0.0;  ///< r_e (length)
-  /// f_c does not go to 0 towards r_e, but for 1e-4 of the largest: there u' has a step, of which no stiffness tells, and the Laplacian of the energy no value.
+  /// f_c does not go to 0 towards r_e, but for 1e-4 of the largest: there u' has a step, of which no stiffness tells, and the
+  /// Laplacian of the energy no value.
   bool force_jumps = false;
   /// End of the force and of friction above a tenth of the largest: without the weak friction of longer range.
   double range = 0.0;

@@ -56,9 +56,8 @@ class Solver {
   const std::string& name() const { return options_.name; }
 
   /// Set-up for `system`, which must outlive the following solves. Call again when its generation
-  /// changed.
+  /// changed. All ranks of the system's share call `bind` and `solve` together, and get the same report.
   void bind(const System& system);
-  /// All ranks of the system's share call `bind` and `solve` together, and get the same report.
   /// Solves from the initial guess in x (size system.size()). Never throws for lack of convergence:
   /// the report says so and the caller must act on it. x has zero mean where the problem is
   /// projected.
