@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -60,9 +61,29 @@ class Directions {
 
 // ---- Groups that hold fast, told from a few links
 
-/// A path along links from `start`, ever further along c and back to an image of `start`: how far it went round the box.
+/// Which body a mobile particle belongs to; -1: none.
 template <int D>
-std::optional<Vec<D>> winding(const Resistance<D>& resistance, std::size_t start, int c) {
+class Membership {
+ public:
+  explicit Membership(const DofMap<D>& dofs) {
+    if (dofs.bodies() == 0) return;
+    body_.assign(index(dofs.mobile()), -1);
+    for (std::size_t b = 0; b < index(dofs.bodies()); ++b)
+      for (const std::int32_t p : dofs.constituents(b))
+        body_[index(dofs.mobile_of(index(p)))] = static_cast<std::int32_t>(b);
+  }
+  std::int32_t operator[](std::size_t row) const { return body_.empty() ? -1 : body_[row]; }
+
+ private:
+  std::vector<std::int32_t> body_;
+};
+
+/// A path along links and through bodies from `start`, ever further along c and back to an image of `start`: how far it went
+/// round the box.
+template <int D>
+std::optional<Vec<D>> winding(const Resistance<D>& resistance, const DofMap<D>& dofs,
+                              std::span<const Vec<D>> arms, const Membership<D>& body,
+                              std::size_t start, int c) {
   const double length = resistance.box().size[c];
   Vec<D> gone{};
   std::size_t row = start;
@@ -70,18 +91,28 @@ std::optional<Vec<D>> winding(const Resistance<D>& resistance, std::size_t start
     std::int32_t next = -1;
     Vec<D> reached{};
     double best = 0.0;
-    for (const auto& link : resistance.links(row)) {
-      if (!resistance.ties(link)) continue;
-      const Vec<D> d = way(resistance, row, link);
+    // Whether the walk may end at `node`, a step d away; else what speaks for going there.
+    const auto ends_at = [&](std::int32_t node, const Vec<D>& d) {
       const Vec<D> there = gone + d;
-      if (index(link.node) == start && there[c] > 0.25 * length) return there;
+      if (index(node) == start && there[c] > 0.25 * length) {
+        reached = there;
+        return true;
+      }
       Vec<D> aside = there;
       aside[c] = 0.0;
       const double merit = d[c] - norm(aside);
-      if (!(d[c] > 0.0) || (next >= 0 && merit <= best)) continue;
-      next = link.node;
+      if (!(d[c] > 0.0) || (next >= 0 && merit <= best)) return false;
+      next = node;
       reached = there;
       best = merit;
+      return false;
+    };
+    for (const auto& link : resistance.links(row))
+      if (resistance.ties(link) && ends_at(link.node, way(resistance, row, link))) return reached;
+    if (body[row] >= 0) {
+      const Vec<D>& arm = arms[index(dofs.particle_of(row))];
+      for (const std::int32_t p : dofs.constituents(index(body[row])))
+        if (ends_at(dofs.mobile_of(index(p)), arms[index(p)] - arm)) return reached;
     }
     if (next < 0) return {};
     row = index(next);
@@ -92,13 +123,17 @@ std::optional<Vec<D>> winding(const Resistance<D>& resistance, std::size_t start
 
 /// Links that go round the box one way leave rotations about that way, two ways none; in two dimensions one is enough.
 template <int D>
-bool goes_round(const Resistance<D>& resistance) {
+bool goes_round(const Resistance<D>& resistance, const DofMap<D>& dofs,
+                std::span<const Vec<D>> arms) {
+  const Membership<D> body(dofs);
   Directions<D> ways;
   for (int c = 0; c < D && !ways.enough(); ++c) {
     if (!resistance.box().is_periodic(c)) continue;
     std::optional<Vec<D>> found;
-    for (std::size_t k = 0; k < walks && !found; ++k)
-      found = winding(resistance, k * index(resistance.nodes()) / walks, c);
+    for (std::size_t k = 0; k < walks && !found; ++k) {
+      const std::size_t start = k * index(resistance.nodes()) / walks;
+      found = winding(resistance, dofs, arms, body, start, c);
+    }
     if (found) ways.add(*found);
   }
   return ways.enough();
@@ -110,13 +145,31 @@ bool stuck(const Resistance<D>& resistance, std::size_t row) {
   return relative_determinant<D>(resistance.anchors()[row].data()) > 1e-6;
 }
 
-/// The particle and D - 1 linked neighbours, not on a line with it, are stuck: so their group is.
+/// No slip of this link is without friction, beside all friction of the particle.
+template <int D>
+bool resists_all_slip(const Resistance<D>& resistance, std::size_t row,
+                      const typename Resistance<D>::Link& link) {
+  if (!resistance.transverse()) return false;
+  double of_particle = 0.0;
+  for (std::size_t c = 0; c < D; ++c) of_particle += resistance.diagonal()[row][c * D + c];
+  const auto& across = resistance.across(link);
+  const Vec<D>& g = resistance.g(link);
+  const double along = across.sign * dot(g, g) + across.zeta_perp;
+  return std::min(along, across.zeta_perp) > 1e-6 * of_particle;
+}
+
+/// D - 1 linked neighbours, not on a line with the particle, have its velocity: so their group does not turn. Neighbours do
+/// where links resist all slip, or where they and the particle are stuck; with known velocities it must be stuck.
 template <int D>
 bool holds_fast(const Resistance<D>& resistance, std::size_t row) {
-  if (!stuck(resistance, row)) return false;
+  const bool anchored = !resistance.anchors().empty();
+  if (anchored && !stuck(resistance, row)) return false;
   Directions<D> ways;
   for (const auto& link : resistance.links(row)) {
-    if (!resistance.ties(link) || !stuck(resistance, index(link.node))) continue;
+    if (!resistance.ties(link)) continue;
+    if (!(anchored && stuck(resistance, index(link.node))) &&
+        !resists_all_slip(resistance, row, link))
+      continue;
     const Vec<D> d = way(resistance, row, link);
     if (norm(d) > 0.0) ways.add(d);
     if (ways.enough()) return true;
@@ -128,27 +181,31 @@ bool holds_fast(const Resistance<D>& resistance, std::size_t row) {
 
 /// Rows of a tall matrix S, kept as a triangle T with T^T T = S^T S: no square is formed, so that what is zero to rounding is
 /// told from what is small.
+template <int columns>
 class Slips {
  public:
-  explicit Slips(int columns) : rows_(Eigen::MatrixXd::Zero(64 + columns, columns)) {}
-  void add(const Eigen::RowVectorXd& row) {
+  using Row = Eigen::Matrix<double, 1, columns>;
+  Slips() { rows_.setZero(); }
+  void add(const Row& row) {
     if (used_ == rows_.rows()) compress();
     rows_.row(used_++) = row;
   }
-  Eigen::MatrixXd triangle() {
+  Eigen::Matrix<double, columns, columns> triangle() {
     compress();
-    return rows_.topRows(rows_.cols());
+    return rows_.template topRows<columns>();
   }
 
  private:
+  using Rows = Eigen::Matrix<double, 64 + columns, columns>;
   void compress() {
-    const Eigen::MatrixXd r = rows_.householderQr().matrixQR().triangularView<Eigen::Upper>();
-    used_ = rows_.cols();
+    const Eigen::HouseholderQR<Rows> parts(rows_);
     rows_.setZero();
-    rows_.topRows(used_) = r.topRows(used_);
+    rows_.template topRows<columns>().template triangularView<Eigen::Upper>() =
+        parts.matrixQR().template topRows<columns>();
+    used_ = columns;
   }
 
-  Eigen::MatrixXd rows_;
+  Rows rows_;
   Eigen::Index used_ = 0;
 };
 
@@ -159,15 +216,13 @@ class GroupMotions {
       : resistance_(resistance),
         dofs_(dofs),
         arms_(arms),
-        body_(index(dofs.mobile()), -1),
+        body_(dofs),
         node_(index(dofs.mobile()), 0),
         at_(index(dofs.mobile())),
-        seen_(index(dofs.mobile()), 0) {
-    for (std::size_t b = 0; b < index(dofs.bodies()); ++b)
-      for (const std::int32_t p : dofs.constituents(b))
-        body_[index(dofs.mobile_of(index(p)))] = static_cast<std::int32_t>(b);
+        seen_(index(dofs.mobile()), 0),
+        body_seen_(index(dofs.bodies()), 0) {
     std::size_t free = 0;
-    for (std::size_t s = 0; s < body_.size(); ++s)
+    for (std::size_t s = 0; s < node_.size(); ++s)
       node_[s] = body_[s] < 0 ? dofs.free_node(free++) : dofs.body_node(index(body_[s]));
   }
 
@@ -202,7 +257,6 @@ class GroupMotions {
       at_[row] = there;
       rows_.push_back(row);
     };
-    std::vector<char> body_seen(index(dofs_.bodies()), 0);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const std::size_t row = rows_[k];
       for (const auto& link : resistance_.links(row))
@@ -212,8 +266,8 @@ class GroupMotions {
         continue;
       }
       const auto body = index(body_[row]);
-      if (body_seen[body] != 0) continue;
-      body_seen[body] = 1;
+      if (body_seen_[body] != 0) continue;
+      body_seen_[body] = 1;
       const Vec<D> centre = at_[row] - arms_[index(dofs_.particle_of(row))];
       for (const std::int32_t p : dofs_.constituents(body))
         reach(index(dofs_.mobile_of(index(p))), centre + arms_[index(p)]);
@@ -239,21 +293,24 @@ class GroupMotions {
     }
   }
 
+  /// Of a force at an arm: its power in each of the motions.
+  static typename Slips<motions>::Row power(const Vec<D>& force, const Vec<D>& arm,
+                                            bool translates) {
+    typename Slips<motions>::Row row;
+    const Vec<D> turns = torque(arm, force);
+    for (int c = 0; c < D; ++c) row(c) = translates ? force[c] : 0.0;
+    for (int c = D; c < motions; ++c) row(c) = turns[c - D];
+    return row;
+  }
+
   /// Adds slips times the roots of their friction: of links to later particles, and of known neighbours.
-  void add_slips(std::size_t row, int first, Slips& slips) const {
-    const auto along = [&](const Vec<D>& direction, const auto& slip_of) {
-      Eigen::RowVectorXd slip(motions - first);
-      for (int c = first; c < motions; ++c) slip(c - first) = dot(direction, slip_of(c));
-      slips.add(slip);
-    };
+  void add_slips(std::size_t row, Slips<motions>& slips) const {
     for (const auto& link : resistance_.links(row)) {
       if (!resistance_.ties(link) || index(link.node) < row) continue;
-      const auto slip = [&](int c) {
-        return velocity(c, at_[row]) - velocity(c, at_[index(link.node)]);
-      };
+      const Vec<D> apart = at_[row] - at_[index(link.node)];
       const Vec<D>& g = resistance_.g(link);
       if (!resistance_.transverse()) {
-        along(g, slip);
+        slips.add(power(g, apart, false));
         continue;
       }
       typename Resistance<D>::Block friction{};
@@ -261,11 +318,11 @@ class GroupMotions {
       for (std::size_t a = 0; a < D; ++a)
         for (std::size_t b = 0; b < D; ++b)
           friction[a * D + b] = across.sign * g.x[a] * g.x[b] + (a == b ? across.zeta_perp : 0.0);
-      for (const Vec<D>& root : roots(friction)) along(root, slip);
+      for (const Vec<D>& root : roots(friction)) slips.add(power(root, apart, false));
     }
     if (resistance_.anchors().empty()) return;
     for (const Vec<D>& root : roots(resistance_.anchors()[row]))
-      along(root, [&](int c) { return velocity(c, at_[row]); });
+      slips.add(power(root, at_[row] - centre_, true));
   }
   /// Vectors with block = sum of their squares; what rounding adds to a singular block left out.
   static std::vector<Vec<D>> roots(const typename Resistance<D>::Block& block) {
@@ -285,36 +342,53 @@ class GroupMotions {
   /// Combinations of the motions from `first` on, orthonormal over the unknowns, that cost nothing: columns.
   Eigen::MatrixXd without_dissipation(int first) const {
     const int count = motions - first;
-    Eigen::MatrixXd product = Eigen::MatrixXd::Zero(count, count);
-    for (int a = 0; a < count; ++a)
-      for (int b = 0; b < count; ++b)
-        for (const Mover& m : movers_) {
-          product(a, b) += dot(velocity(first + a, m.centre), velocity(first + b, m.centre));
-          if (a == b && first + a >= D && m.body >= 0) product(a, b) += 1.0;
-        }
-    Slips slips(count);
+    const Eigen::MatrixXd unit = orthonormal(first);
     double stiffest = 0.0;
-    for (const std::size_t row : rows_) {
-      add_slips(row, first, slips);
+    for (const std::size_t row : rows_)
       for (std::size_t c = 0; c < D; ++c)
         stiffest = std::max(stiffest, resistance_.diagonal()[row][c * D + c]);
+    Slips<motions> slips;
+    Eigen::MatrixXd left = unit;
+    for (std::size_t k = 0; k < rows_.size() && left.cols() > 0; ++k) {
+      add_slips(rows_[k], slips);
+      // More links only cost more. Seldom, as it is dearer than many links.
+      if (k + 1 < rows_.size() && !std::has_single_bit(k + 1)) continue;
+      const Eigen::JacobiSVD<Eigen::MatrixXd> costs(slips.triangle().rightCols(count) * unit,
+                                                    Eigen::ComputeFullV);
+      Eigen::Index costly = 0;  // singular values descend
+      while (costly < costs.singularValues().size() &&
+             costs.singularValues()(costly) > no_dissipation * std::sqrt(stiffest))
+        ++costly;
+      left = unit * costs.matrixV().rightCols(unit.cols() - costly);
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> sizes(product);
+    return left;
+  }
+
+  /// Combinations of the motions from `first` on, orthonormal over the unknowns; a line does not turn about itself.
+  Eigen::MatrixXd orthonormal(int first) const {
+    const int count = motions - first;
+    Eigen::Matrix<double, motions, motions> products;
+    products.setZero();
+    for (const Mover& m : movers_) {
+      Eigen::Matrix<double, D, motions> of_mover;
+      for (int c = 0; c < motions; ++c) {
+        const Vec<D> v = velocity(c, m.centre);
+        for (int k = 0; k < D; ++k) of_mover(k, c) = v[k];
+        if (c >= D && m.body >= 0) products(c, c) += 1.0;
+      }
+      products.noalias() += of_mover.transpose().lazyProduct(of_mover);
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> sizes(
+        products.bottomRightCorner(count, count));
     const double largest = sizes.eigenvalues().maxCoeff();
-    Eigen::MatrixXd unit(count, 0);  // orthonormal; a line does not turn about itself
+    Eigen::MatrixXd unit(count, 0);
     for (int k = 0; k < count; ++k) {
       const double size = sizes.eigenvalues()(k);
       if (!(size > 1e-12 * largest)) continue;
       unit.conservativeResize(Eigen::NoChange, unit.cols() + 1);
       unit.rightCols(1) = sizes.eigenvectors().col(k) / std::sqrt(size);
     }
-    if (unit.cols() == 0) return unit;
-    const Eigen::JacobiSVD<Eigen::MatrixXd> costs(slips.triangle() * unit, Eigen::ComputeFullV);
-    Eigen::Index costly = 0;  // singular values descend
-    while (costly < costs.singularValues().size() &&
-           costs.singularValues()(costly) > no_dissipation * std::sqrt(stiffest))
-      ++costly;
-    return unit * costs.matrixV().rightCols(unit.cols() - costly);
+    return unit;
   }
 
   struct Mover {
@@ -326,12 +400,13 @@ class GroupMotions {
   const Resistance<D>& resistance_;
   const DofMap<D>& dofs_;
   std::span<const Vec<D>> arms_;
-  std::vector<std::int32_t> body_;  // per mobile particle, -1: none
-  std::vector<std::size_t> node_;   // per mobile particle
-  std::vector<Vec<D>> at_;          // per mobile particle
-  std::vector<char> seen_;          // per mobile particle
-  std::vector<std::size_t> rows_;   // of the group
-  std::vector<Mover> movers_;       // of the group
+  Membership<D> body_;
+  std::vector<std::size_t> node_;  // per mobile particle
+  std::vector<Vec<D>> at_;         // per mobile particle
+  std::vector<char> seen_;         // per mobile particle
+  std::vector<char> body_seen_;    // per body
+  std::vector<std::size_t> rows_;  // of the group
+  std::vector<Mover> movers_;      // of the group
   Vec<D> centre_{};
 };
 
@@ -342,19 +417,22 @@ FreeMotions free_motions(const Resistance<D>& resistance, const DofMap<D>& dofs,
                          std::span<const Vec<D>> arms, std::span<const std::int32_t> parent) {
   FreeMotions found;
   const bool anchored = !resistance.anchors().empty();
-  if (parent.empty() || (!anchored && goes_round(resistance))) return found;
-  std::vector<std::size_t> open;  // roots of groups that may have free motions
+  if (parent.empty() || (!anchored && goes_round(resistance, dofs, arms))) return found;
+  std::vector<char> open(parent.size(), 0);  // roots of groups that may have free motions
+  std::size_t left = 0;
   for (std::size_t n = 0; n < parent.size(); ++n)
-    if (index(parent[n]) == n) open.push_back(n);
+    if (index(parent[n]) == n) open[n] = 1, ++left;
   const auto root = [&](std::size_t n) {
     while (index(parent[n]) != n) n = index(parent[n]);
     return n;
   };
-  for (std::size_t n = 0; anchored && n < parent.size() && !open.empty(); ++n)
-    if (holds_fast(resistance, n)) std::erase(open, root(n));
-  if (open.empty()) return found;
+  const bool tell = anchored || resistance.transverse();
+  for (std::size_t n = 0; tell && n < parent.size() && left > 0; ++n)
+    if (char& group = open[root(n)]; group != 0 && holds_fast(resistance, n)) group = 0, --left;
+  if (left == 0) return found;
   GroupMotions<D> group(resistance, dofs, arms);
-  for (const std::size_t n : open) group.add_to(found, n);
+  for (std::size_t n = 0; n < parent.size(); ++n)
+    if (open[n] != 0) group.add_to(found, n);
   return found;
 }
 
