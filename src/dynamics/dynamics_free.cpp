@@ -1,8 +1,10 @@
 // What a solve says of groups of particles that nothing resists in some rigid motion (operator/free_motions.h).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
+#include <string>
 
 #include "odpd/core/error.h"
 #include "odpd/core/index.h"
@@ -15,6 +17,7 @@ namespace {
 
 // Of the forces' norm: what pair forces have along a null motion is rounding.
 constexpr double no_work = 1e-9;
+constexpr std::size_t most_named = 3;
 
 template <int D>
 double norm_of_forces(std::span<const double> load, const Share& share,
@@ -32,38 +35,47 @@ template <int D>
 void Dynamics<D>::judge_null_motions(const Stage<D>& stage) {
   const Resistance<D>& mobile = resistance_.mobile();
   if (mobile.null_motions().empty()) return;
-  std::string who;
-  for (const FreeGroup& group : mobile.free_groups())
-    who += fmt::format("{}{} particles, among them particle {}, can {} ({} null motion(s) of R)",
-                       who.empty() ? "" : "; ", group.particles, particles_.id[index(group.first)],
+  const auto told = [&](const FreeGroup& group) {
+    return fmt::format("{} particles, among them particle {}, can {} ({} null motion(s) of R)",
+                       group.particles, particles_.id[index(group.first)],
                        mobile.translations_are_null()
                            ? "turn as one"
                            : "move as one along what holds them, or turn about it",
                        group.motions);
-  who += ", as friction along lines of centres does not resist that";
+  };
+  const std::span<const FreeGroup> groups = mobile.free_groups();
+  std::string who;
+  for (const FreeGroup& group : groups.first(std::min(groups.size(), most_named)))
+    who += (who.empty() ? "" : "; ") + told(group);
+  if (groups.size() > most_named) who += fmt::format("; and {} more", groups.size() - most_named);
+  const std::string why = ", as friction along lines of centres does not resist that";
   if (box_.shear)
     throw SolverError(
-        who +
+        who + why +
             ", and under shear nothing says how fast they do. Cures: mass (fluid.mass) or friction "
             "across lines of centres (fluid.gamma_perp)",
         SolverError::Cause::singular);
-  const std::string cures =
-      "a drag (fluid.zeta_0), mass (fluid.mass) or friction across lines of centres "
-      "(fluid.gamma_perp)";
+  const std::string others =
+      ", mass (fluid.mass) or friction across lines of centres (fluid.gamma_perp)";
   const Unknowns f = force(stage);
   const Share share = motion_.dofs().share();
   const double least = no_work * norm_of_forces(f, share, stage.network);
-  for (const std::vector<double>& u : mobile.null_motions())
-    if (std::abs(share.dot(u, f, D)) > least)
-      throw SolverError(
-          who + ", while forces from outside drive it: R v = f has no answer. Cures: " + cures,
-          SolverError::Cause::singular);
+  auto u = mobile.null_motions().begin();  // group by group
+  for (const FreeGroup& group : groups)
+    for (const auto end = u + group.motions; u != end; ++u)
+      if (std::abs(share.dot(*u, f, D)) > least)
+        throw SolverError(
+            told(group) + why +
+                ", while forces from outside drive it: R v = f has no answer. Cures: a drag "
+                "(fluid.zeta_0, with fluid.zeta_0_under_flow = true)" +
+                others,
+            SolverError::Cause::singular);
   if (told_null_motions_) return;
   told_null_motions_ = true;
-  log_warning("solver: " + who +
+  log_warning("solver: " + who + why +
               ". These motions stay out of v, as forces between particles do not drive them "
               "(docs/solvers.md). Where they should not: " +
-              cures);
+              drag_cure + others);
 }
 
 template void Dynamics<2>::judge_null_motions(const Stage<2>&);

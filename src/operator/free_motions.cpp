@@ -231,15 +231,17 @@ class GroupMotions {
     const bool anchored = !resistance_.anchors().empty();
     const int first = anchored ? 0 : D;
     const Eigen::MatrixXd free = without_dissipation(first);
+    if (free.cols() == 0) return;
+    found.groups.push_back({static_cast<std::int64_t>(rows_.size()), dofs_.particle_of(root),
+                            static_cast<std::int64_t>(free.cols())});
+    found.motions += free.cols();
+    if (found.motions > most_free_motions) return found.basis.clear();
     for (Eigen::Index k = 0; k < free.cols(); ++k) {
       std::vector<double> u(index(dofs_.unknowns()), 0.0);
       for (Eigen::Index c = 0; c < free.rows(); ++c)
         add(first + static_cast<int>(c), free(c, k), u);
       found.basis.push_back(std::move(u));
     }
-    if (free.cols() > 0)
-      found.groups.push_back({static_cast<std::int64_t>(rows_.size()), dofs_.particle_of(root),
-                              static_cast<std::int64_t>(free.cols())});
   }
 
  private:
@@ -260,7 +262,8 @@ class GroupMotions {
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       const std::size_t row = rows_[k];
       for (const auto& link : resistance_.links(row))
-        if (resistance_.ties(link)) reach(index(link.node), at_[row] + way(resistance_, row, link));
+        if (seen_[index(link.node)] == 0 && resistance_.ties(link))
+          reach(index(link.node), at_[row] + way(resistance_, row, link));
       if (body_[row] < 0) {
         movers_.push_back({at_[row], node_[row], -1});
         continue;

@@ -29,6 +29,18 @@ std::size_t other_end(const PairNetwork<D>& network, std::int32_t edge, std::int
   return index(network.i[k] == particle ? network.j[k] : network.i[k]);
 }
 
+void refuse_many_free_motions(const FreeMotions& free, std::span<const std::int64_t> id) {
+  if (free.motions <= most_free_motions) return;
+  throw SolverError(
+      fmt::format("{} groups of particles, one with particle {}, can each move as one along what "
+                  "holds them, or turn about it: friction along lines of centres does not resist "
+                  "these {} null motions of R, and at most {} can be kept out of v. Cures: {}, "
+                  "mass (fluid.mass) or friction across lines of centres (fluid.gamma_perp)",
+                  free.groups.size(), id[index(free.groups.front().first)], free.motions,
+                  most_free_motions, drag_cure),
+      SolverError::Cause::singular);
+}
+
 }  // namespace
 
 template <int D>
@@ -86,7 +98,9 @@ void Resistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs
   share_.ranks->together([&] { check_rattlers(network, dofs, particles); });
   share_.ranks->together([&] { check_clusters(dofs, particles); });
   // With the centre of mass held the problem is another one.
-  if (!holds_centre_of_mass()) free_ = free_motions<D>(*this, dofs, arms, parent_);
+  if (holds_centre_of_mass()) return;
+  free_ = free_motions<D>(*this, dofs, arms, parent_);
+  share_.ranks->together([&] { refuse_many_free_motions(free_, particles.id); });
 }
 
 template <int D>
@@ -242,13 +256,11 @@ void Resistance<D>::check_clusters(const DofMap<D>& dofs, const Particles<D>& pa
       if (root(static_cast<std::int32_t>(m)) == own) ++members;
     throw SolverError(
         fmt::format("{} particle(s), among them particle {}, are a group of particles out of reach "
-                    "of all others, which can move freely as one, so R is "
-                    "singular. Cures: a drag (fluid.zeta_0), mass (fluid.mass), a weak pairwise "
-                    "friction of longer range "
-                    "that reaches the others "
-                    "(fluid.rattler_friction = {{ gamma = 0.1, cutoff = "
-                    "2.0 }}), a higher density, or a larger cutoff",
-                    members, particles.id[index(dofs.particle_of(n))]),
+                    "of all others, which can move freely as one, so R is singular. Cures: {}, "
+                    "mass (fluid.mass), a weak pairwise friction of longer range that reaches the "
+                    "others (fluid.rattler_friction = {{ gamma = 0.1, cutoff = 2.0 }}), a higher "
+                    "density, or a larger cutoff",
+                    members, particles.id[index(dofs.particle_of(n))], drag_cure),
         SolverError::Cause::singular);
   }
 }

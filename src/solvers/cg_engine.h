@@ -4,6 +4,7 @@
 #include <string>
 
 #include "odpd/core/archive.h"
+#include "odpd/operator/free_motions.h"
 #include "odpd/solvers/solver.h"
 
 namespace odpd {
@@ -28,11 +29,12 @@ std::unique_ptr<CgEngine> make_mixed_cg(const System& system, const SolverOption
 
 /// Residuals of conjugate gradients rise and fall, but never by this much on a regular system.
 inline constexpr double divergence = 1e6;
-inline constexpr const char* diverged =
-    "the residual grows without bound: the matrix is singular, as where some particles can move "
-    "against others "
-    "without friction, and the forces do work on that motion; a drag (fluid.zeta_0) or mass "
-    "(fluid.mass) helps";
+inline const std::string diverged =
+    std::string(
+        "the residual grows without bound: the matrix is singular, as where some particles "
+        "can move against others without friction, and the forces do work on that motion; "
+        "what helps is ") +
+    drag_cure + ", or mass (fluid.mass)";
 inline constexpr const char* no_longer_finite = "numbers are no longer finite";
 
 }  // namespace odpd

@@ -44,8 +44,7 @@ constexpr std::int64_t fewest_for_grid = D == 2 ? 500 : 5000;
 constexpr double shift_without_grid = 0.02;
 constexpr const char* no_grid_for_null_motions =
     "preconditioner multilevel knows no null motions but translations: block-Jacobi instead, while "
-    "particles are free to "
-    "turn";
+    "particles are free to turn";
 
 template <int D>
 class MixedCg : public CgEngine {
@@ -126,8 +125,8 @@ void MixedCg<D>::set_up(const System& system) {
 template <int D>
 bool MixedCg<D>::grid_pays() const {
   if (share_.count(resistance_->nodes()) < fewest_for_grid<D>) return false;
-  std::array<double, 2>
-      sum{};  // trace of some nodes' blocks, and how many: their mean need not be exact
+  // Trace of some nodes' blocks, and how many: their mean need not be exact.
+  std::array<double, 2> sum{};
   constexpr std::size_t sample = 1000;
   const auto blocks = resistance_->diagonal();
   for (std::size_t n = 0; n < blocks.size();

@@ -152,9 +152,8 @@ std::string Solver::verdict(const Attempt& last, const Measured& measured,
   if (!std::isfinite(measured.residual) || !std::isfinite(measured.curvature)) {
     return name() +
            ": the solution is not finite: the matrix is singular or far from positive "
-           "definite; check that every particle is held by enough neighbours, or give them a drag "
-           "(fluid.zeta_0) or mass "
-           "(fluid.mass)";
+           "definite; check that every particle is held by enough neighbours, or give them " +
+           drag_cure + ", or mass (fluid.mass)";
   }
   const bool met =
       options_.stopping == Stopping::increment ? last.ok : measured.residual <= options_.tolerance;

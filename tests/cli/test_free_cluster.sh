@@ -51,6 +51,7 @@ x,y
 CSV
 run() { expect_exit 0 "$odpd" run "$@" --threads 1; }
 cures=(fluid.zeta_0=0.1 fluid.mass=0.01 fluid.gamma_perp=0.5)
+drag_under_flow='(fluid.zeta_0, with fluid.zeta_0_under_flow = true)'
 
 # --- every solver ---
 solvers=$("$odpd" info | sed -n 's/.*solvers[: ]*//p' | tr -d ,)
@@ -69,11 +70,10 @@ done
 # --- a torque from outside ---
 wave=(--set 'body_force.force=[1.0, 0.0]' --set 'body_force.wave={along = "y"}')
 expect_error 2 "$odpd" run drop "${wave[@]}" --out torque -- '20 particles' 'can turn as one' 'no answer' \
-  fluid.zeta_0 fluid.mass fluid.gamma_perp
-for cure in "${cures[@]}"; do
-  more=()
-  [ "$cure" = fluid.zeta_0=0.1 ] && more=(--set fluid.zeta_0_under_flow=true)
-  run drop "${wave[@]}" --set "$cure" "${more[@]}" --out cured
+  "$drag_under_flow" fluid.mass fluid.gamma_perp
+run drop "${wave[@]}" --set fluid.zeta_0=0.1 --set fluid.zeta_0_under_flow=true --out cured
+for cure in fluid.mass=0.01 fluid.gamma_perp=0.5; do
+  run drop "${wave[@]}" --set "$cure" --out cured
 done
 
 # --- under shear ---
@@ -92,5 +92,23 @@ expect_error 2 "$odpd" run two --out apart -- '20 particle(s)' 'out of reach of 
 for cure in fluid.zeta_0=0.1 fluid.mass=0.01 'fluid.rattler_friction={gamma = 0.1, cutoff = 3.0}'; do
   run two --set "$cure" --out cured
 done
+
+# --- five of them, each pinned by an obstacle: three are named; of a force on one of them the error names that one ---
+{
+  cat drop/case.toml
+  echo '[[body]]'
+  echo 'shape = "points"'
+  echo 'points = [{ at = [0.0, 0.0] }]'
+  echo 'motion = "fixed"'
+  echo 'positions = [{ at = [2.0, 5.0] }, { at = [5.0, 5.0] }, { at = [8.0, 5.0] }, { at = [11.0, 5.0] }, { at = [14.0, 5.0] }]'
+} >two/case.toml
+awk -F, 'NR == 1 { print } NR > 1 { for (k = -1; k <= 3; ++k) printf "%.16g,%.16g\n", $1 + 3 * k, $2 }' drop/cluster.csv >two/cluster.csv
+run two --out pinned
+expect_text "$err_text" 'turn about it' '; and 2 more,' 'where walls move or forces drive, with fluid.zeta_0_under_flow = true'
+expect test "$(grep -o '20 particles, among them' "$err_text" | wc -l)" -eq 3
+fourth=(--set 'body_force.region=[{axis = "x", from = 9.5, to = 12.5, force = [0.0, 1.0]}]')
+expect_error 2 "$odpd" run two "${fourth[@]}" --out driven -- '20 particles' 'no answer' "$drag_under_flow"
+particle=$(sed -n 's/.*among them particle \([0-9]*\),.*/\1/p' "$err_text")
+expect test "$((${particle:-0} % 5))" -eq 3 # the file has one of each in turn
 
 finish

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "odpd/core/error.h"
 #include "odpd/core/rotation.h"
 #include "odpd/operator/rigid_resistance.h"
 #include "support/dimensions.h"
@@ -38,9 +39,9 @@ struct Drop : Fluid<D> {
 
 /// Null motions of the system, after checks of what every one of them must fulfil.
 template <int D>
-std::size_t count(Fluid<D>& fluid, const DpdParameters& p = {}, double shift = 0.0,
+std::size_t count(Fluid<D>& fluid, const DpdModel<D>& model, double shift = 0.0,
                   std::span<const Vec<D>> arms = {}) {
-  fluid.connect(DpdModel<D>(1, {p}));
+  fluid.connect(model);
   const DofMap<D> dofs(fluid.particles);
   RigidResistance<D> resistance(fluid.box);
   resistance.rebuild(fluid.network, dofs, fluid.particles, fluid.particles.position, arms, shift);
@@ -61,6 +62,12 @@ std::size_t count(Fluid<D>& fluid, const DpdParameters& p = {}, double shift = 0
     EXPECT_LT(support::norm(kept), 1e-12) << "nothing of it is left by the projection";
   }
   return motions.size();
+}
+
+template <int D>
+std::size_t count(Fluid<D>& fluid, const DpdParameters& p = {}, double shift = 0.0,
+                  std::span<const Vec<D>> arms = {}) {
+  return count<D>(fluid, DpdModel<D>(1, {p}), shift, arms);
 }
 
 template <int D>
@@ -148,6 +155,76 @@ TYPED_TEST(FreeMotionsTest, BodiesTurnWithTheirDrop) {
   }
   fluid.particles.add_body(body, fluid.box, 0);
   EXPECT_EQ(count<D>(fluid, {}, 0.0, arms), rotations<D>);
+}
+
+// Friction in all directions along one link leaves the rotation about it.
+TYPED_TEST(FreeMotionsTest, OneLinkIsAnAxis) {
+  constexpr int D = TypeParam::D;
+  Fluid<D> fluid{edge_of_box, true};
+  RigidBody<D> body;
+  body.pose.centre = support::uniform_vec<D>(3.0);
+  for (int corner = 0; corner <= D; ++corner) {
+    body.frame.push_back(support::uniform_vec<D>(corner == 0 ? -0.5 : 0.0));
+    if (corner > 0) body.frame.back()[corner - 1] += 0.5;
+  }
+  std::vector<Vec<D>> arms(body.frame);
+  fluid.particles.add_body(body, fluid.box, 0);
+  arms.emplace_back();
+  fluid.particles.add(support::uniform_vec<D>(2.0), 0);  // the first corner is within its reach
+  DpdParameters across;
+  across.gamma_perp = 0.5;
+  EXPECT_EQ(count<D>(fluid, across, 0.0, arms), D == 2 ? 0U : 1U);
+  ASSERT_EQ(fluid.network.size(), 1);
+}
+
+// A drop that friction across its links keeps from turning slides across the one link that holds it.
+TYPED_TEST(FreeMotionsTest, FrictionInsideADropDoesNotHoldIt) {
+  constexpr int D = TypeParam::D;
+  Fluid<D> fluid{edge_of_box, true};
+  for (int corner = 0; corner <= D; ++corner) {
+    auto r = support::uniform_vec<D>(3.0);
+    if (corner > 0) r[corner - 1] += 0.6;
+    fluid.particles.add(r, 0);
+  }
+  fluid.particles.add(support::uniform_vec<D>(2.6), 1, Group::wall(0));
+  DpdParameters across, along;
+  across.gamma_perp = 0.5;
+  EXPECT_EQ(count<D>(fluid, DpdModel<D>(2, {across, along, along, along})),
+            static_cast<std::size_t>(D - 1));
+  EXPECT_EQ(count<D>(fluid, DpdModel<D>(2, {across, across, across, along})), 0U);
+}
+
+// As many pinned clusters as there may be, and one more.
+TYPED_TEST(FreeMotionsTest, TooManyAreRefused) {
+  constexpr int D = TypeParam::D;
+  Fluid<D> fluid{30.0, true};
+  const auto add_pinned = [&](std::size_t k) {
+    auto middle = support::uniform_vec<D>(1.5);
+    middle[0] += 3.0 * static_cast<double>(k % 8);
+    middle[1] += 3.0 * static_cast<double>(k / 8);
+    fluid.particles.add(middle, 0, Group::wall(0));
+    for (int corner = 0; corner <= D; ++corner) {
+      Vec<D> r = middle + support::uniform_vec<D>(-0.2);
+      if (corner > 0) r[corner - 1] += 0.6;
+      fluid.particles.add(r, 0);
+    }
+  };
+  const std::size_t most = static_cast<std::size_t>(most_free_motions) / rotations<D>;
+  for (std::size_t k = 0; k < most; ++k) add_pinned(k);
+  EXPECT_EQ(count<D>(fluid), most * rotations<D>);
+  add_pinned(most);
+  try {
+    count<D>(fluid);
+    ADD_FAILURE() << "not refused";
+  } catch (const SolverError& error) {
+    EXPECT_EQ(error.cause(), SolverError::Cause::singular);
+    const std::string message = error.what();
+    for (const std::string& part :
+         {std::to_string(most + 1) + " groups of particles, one with particle 1,",
+          std::to_string((most + 1) * rotations<D>) + " null motions", std::string("fluid.zeta_0"),
+          std::string("fluid.mass"), std::string("fluid.gamma_perp")})
+      EXPECT_NE(message.find(part), std::string::npos) << part << " in " << message;
+  }
 }
 
 }  // namespace

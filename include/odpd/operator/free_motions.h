@@ -23,16 +23,25 @@ struct FreeGroup {
   std::int64_t motions = 0;
 };
 
+/// Each motion is a vector of all unknowns, and each projection passes through all of them: more are refused.
+inline constexpr std::int64_t most_free_motions = 64;
+
+/// How messages name the drag that resists them.
+inline constexpr const char* drag_cure =
+    "a drag (fluid.zeta_0; where walls move or forces drive, with fluid.zeta_0_under_flow = true)";
+
 struct FreeMotions {
   /// With at least one free motion, in the order of their first particles.
   std::vector<FreeGroup> groups;
-  /// Orthonormal vectors of unknowns, group by group.
+  std::int64_t motions = 0;  ///< of all groups
+  /// Orthonormal vectors of unknowns, group by group; empty with more than most_free_motions.
   std::vector<std::vector<double>> basis;
 };
 
 /// All of them, but for translations where nothing has a known velocity: System::translations has those. `parent`: a forest
 /// over the mobile particles whose trees are the groups; without known velocities there is one. `arms`: as for DofMap.
-/// A fluid that fills its box, or that walls hold, is told from some links; else all links are looked at.
+/// A fluid that fills its box, that walls hold, or with friction across the links, is told from some links; else links are
+/// looked at until no motion is left.
 template <int D>
 FreeMotions free_motions(const Resistance<D>& resistance, const DofMap<D>& dofs,
                          std::span<const Vec<D>> arms, std::span<const std::int32_t> parent);

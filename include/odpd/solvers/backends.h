@@ -1,7 +1,9 @@
 #pragma once
 // The makers behind the name table of make_solver (solver.h).
 #include <memory>
+#include <string>
 
+#include "odpd/operator/free_motions.h"
 #include "odpd/solvers/solver.h"
 
 namespace odpd {
@@ -15,9 +17,11 @@ std::unique_ptr<Solver> make_cholmod(const SolverOptions& options);
 std::unique_ptr<Solver> make_petsc(const SolverOptions& options);
 
 /// What every backend says of an indefinite matrix.
-inline constexpr const char* not_definite =
-    "the matrix is not positive definite: check friction weights, masses and stiffness for "
-    "negative values, and that every particle is held by enough neighbours, or give them a drag "
-    "(fluid.zeta_0) or mass (fluid.mass)";
+inline const std::string not_definite =
+    std::string(
+        "the matrix is not positive definite: check friction weights, masses and stiffness "
+        "for negative values, and that every particle is held by enough neighbours, or "
+        "give them ") +
+    drag_cure + ", or mass (fluid.mass)";
 
 }  // namespace odpd
