@@ -10,6 +10,7 @@
 #include "odpd/core/index.h"
 #include "odpd/core/log.h"
 #include "odpd/dynamics/dynamics.h"
+#include "odpd/pairs/friction.h"
 
 namespace odpd {
 
@@ -52,11 +53,10 @@ void Dynamics<D>::judge_null_motions(const Stage<D>& stage) {
   if (box_.shear)
     throw SolverError(
         who + why +
-            ", and under shear nothing says how fast they do. Cures: mass (fluid.mass) or friction "
-            "across lines of centres (fluid.gamma_perp)",
+            ", and under shear nothing says how fast they do. Cures: mass (fluid.mass) or " +
+            transverse_cure,
         SolverError::Cause::singular);
-  const std::string others =
-      ", mass (fluid.mass) or friction across lines of centres (fluid.gamma_perp)";
+  const std::string others = std::string(", mass (fluid.mass) or ") + transverse_cure;
   const Unknowns f = force(stage);
   const Share share = motion_.dofs().share();
   const double least = no_work * norm_of_forces(f, share, stage.network);

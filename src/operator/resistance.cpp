@@ -11,6 +11,7 @@
 #include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/core/room.h"
+#include "odpd/pairs/friction.h"
 
 namespace odpd {
 
@@ -35,9 +36,9 @@ void refuse_many_free_motions(const FreeMotions& free, std::span<const std::int6
       fmt::format("{} groups of particles, one with particle {}, can each move as one along what "
                   "holds them, or turn about it: friction along lines of centres does not resist "
                   "these {} null motions of R, and at most {} can be kept out of v. Cures: {}, "
-                  "mass (fluid.mass) or friction across lines of centres (fluid.gamma_perp)",
+                  "mass (fluid.mass) or {}",
                   free.groups.size(), id[index(free.groups.front().first)], free.motions,
-                  most_free_motions, drag_cure),
+                  most_free_motions, drag_cure, transverse_cure),
       SolverError::Cause::singular);
 }
 

@@ -32,6 +32,10 @@ struct FrictionParameters {
   friend bool operator==(const FrictionParameters&, const FrictionParameters&) = default;
 };
 
+/// How messages name the friction that resists a group of particles that turns as one.
+inline constexpr const char* transverse_cure =
+    "friction across lines of centres (fluid.gamma_perp)";
+
 /// Throws ConfigError "parameter NAME = VALUE of a pair model must be RANGE" unless `ok`.
 void require_parameter(bool ok, const char* name, double value, const char* range);
 /// Throws ConfigError for values out of range.
