@@ -97,7 +97,7 @@ struct WholeRun {
   Scene<2> scene;
   odpd::Dynamics<2> dynamics;
   std::unique_ptr<odpd::Integrator<2>> integrator;
-  odpd::Clock clock{.dt = 0.02, .total_steps = 400};
+  odpd::Clock clock{.dt = 0.04, .total_steps = 200};
 };
 
 class Registry : public ::testing::Test, protected WholeRun {};
@@ -124,7 +124,7 @@ TEST_F(Registry, EveryKindNamesWhatItGivesAndContinues) {
     for (const auto& observer : observers) list.push_back(observer.get());
     return list;
   };
-  run(101, all(through));
+  run(51, all(through));
   support::MemoryArchive particles;
   scene.particles().save(particles);
   restarted.scene.particles().load(particles);
@@ -135,8 +135,8 @@ TEST_F(Registry, EveryKindNamesWhatItGivesAndContinues) {
     through[k]->save(archive);
     continued[k]->load(archive);
   }
-  run(200, all(through));
-  restarted.run(200, all(continued));
+  run(100, all(through));
+  restarted.run(100, all(continued));
   for (std::size_t k = 0; k < through.size(); ++k) {
     SCOPED_TRACE(through[k]->settings().kind);
     const Results one = records::results(*through[k]), other = records::results(*continued[k]);
