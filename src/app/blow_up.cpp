@@ -198,8 +198,9 @@ std::int64_t BlowUpWatch<D>::fastest() const {
     most = square;
     id = particles.id[i];
   }
-  // The first rank with the fastest of all tells.
-  const bool here = id >= 0 && most == own.ranks->largest(most);
+  // The first rank with the fastest of all tells. All ask, also those that have nobody free.
+  const double fastest_of_all = own.ranks->largest(most);
+  const bool here = id >= 0 && most == fastest_of_all;
   const std::int64_t teller =
       own.ranks->smallest(std::int64_t{here ? own.ranks->rank() : own.ranks->size()});
   return teller == own.ranks->size() ? -1 : own.ranks->sum(teller == own.ranks->rank() ? id : 0);
