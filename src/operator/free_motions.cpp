@@ -22,19 +22,11 @@ constexpr std::size_t walks = 16;  // around the box, before all links are looke
 constexpr double no_dissipation = 1e-9;
 constexpr double parallel = 1e-3;  // sine of the angle of two directions
 
-template <int D>
-Vec<D> position(const Resistance<D>& resistance, std::size_t row) {
-  Vec<D> r;
-  for (std::size_t c = 0; c < D; ++c) r.x[c] = resistance.positions()[row * D + c];
-  return r;
-}
-
 /// From a particle (a row of R) to the other end of its link.
 template <int D>
 Vec<D> way(const Resistance<D>& resistance, std::size_t row,
            const typename Resistance<D>::Link& l) {
-  return resistance.box().separation(position(resistance, index(l.node)),
-                                     position(resistance, row));
+  return resistance.box().separation(resistance.position(index(l.node)), resistance.position(row));
 }
 
 inline bool independent(const Vec<2>& a, const Vec<2>& b) {
@@ -251,7 +243,7 @@ class GroupMotions {
   void unfold(std::size_t root) {
     rows_.assign(1, root);
     movers_.clear();
-    at_[root] = position(resistance_, root);
+    at_[root] = resistance_.position(root);
     seen_[root] = 1;
     const auto reach = [&](std::size_t row, const Vec<D>& there) {
       if (seen_[row] != 0) return;

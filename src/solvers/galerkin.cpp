@@ -15,13 +15,6 @@ template <int D>
 using Triangle = std::array<float, index(GridShape<D>::triangle)>;
 
 template <int D>
-Vec<D> position_of(const Resistance<D>& resistance, std::size_t node) {
-  Vec<D> r;
-  for (std::size_t c = 0; c < D; ++c) r.x[c] = resistance.positions()[node * D + c];
-  return r;
-}
-
-template <int D>
 Triangle<D> triangle_of(const typename Resistance<D>::Block& block) {
   Triangle<D> w;
   std::size_t k = 0;
@@ -129,7 +122,7 @@ void Elements<D>::add_to(GridOperator<D>& a) const {
 
 template <int D>
 Vec<D> grid_position(const Resistance<D>& resistance, std::size_t node) {
-  return resistance.box().straightened(position_of(resistance, node));
+  return resistance.box().straightened(resistance.position(node));
 }
 
 template <int D>
@@ -161,11 +154,11 @@ FrictionSpread friction_spread(const Resistance<D>& resistance) {
   for (std::int64_t n = 0; n < resistance.nodes(); n += step) {
     if (!share.owns(n)) continue;
     const auto node = index(n);
-    const Vec<D> own = position_of(resistance, node);
+    const Vec<D> own = resistance.position(node);
     double sum = 0.0, squares = 0.0;
     for (const auto& link : resistance.links(node)) {
       const auto other = index(link.node);
-      const Vec<D> d = resistance.box().separation(own, position_of(resistance, other));
+      const Vec<D> d = resistance.box().separation(own, resistance.position(other));
       double zeta = dot(resistance.g(link), resistance.g(link));
       if (resistance.transverse())
         zeta = resistance.across(link).sign * zeta + D * resistance.across(link).zeta_perp;

@@ -63,6 +63,11 @@ class Resistance : public System {
   void block_diagonal(std::span<double> blocks) const override;
   const BlockCsr& matrix() const override;
   std::span<const double> positions() const override { return positions_; }
+  Vec<D> position(std::size_t node) const {
+    Vec<D> r;
+    for (std::size_t c = 0; c < D; ++c) r.x[c] = positions_[node * D + c];
+    return r;
+  }
   int space_dimension() const override { return D; }
   int periodic_directions() const override { return box_.periodic_directions(); }
   bool translations_are_null() const override { return translations_are_null_; }
