@@ -82,6 +82,7 @@ FrozenProblem<D> freeze(Simulation<D>& simulation, std::int64_t steps) {
   for (RigidResistance<D>* r : {&problem.as_posed, &problem.held})
     r->rebuild(stage.network, dynamics.dofs(), dynamics.particles(), stage.position, stage.arms,
                inertia + dynamics.constants().zeta_0);
+  problem.as_posed.scale_load(problem.b);
   problem.exact_as_posed = tightest(problem.as_posed.system(), problem.b);
   problem.exact_held = tightest(problem.held.system(), problem.b);
   return problem;

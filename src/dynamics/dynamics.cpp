@@ -212,8 +212,8 @@ void Dynamics<D>::balance_momentum(const Unknowns& load, double shift, Unknowns&
   for (std::size_t k = 0; k < q.size(); ++k) difference[k] = load[k] / shift - q[k];
   const Share share = motion_.dofs().share();
   std::vector<double> excess = translations.sums(difference, share);
-  const std::int64_t nodes = translations.count(q.size(), share);
-  for (double& component : excess) component *= 1.0 / static_cast<double>(nodes);
+  const double nodes = translations.squares(q.size(), share);
+  for (double& component : excess) component *= 1.0 / nodes;
   translations.add(excess, q);
 }
 
@@ -235,11 +235,19 @@ void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights
                         Unknowns& guess) {
   const System& system = assemble(stage, weights);
   judge_null_motions(stage);
+  Unknowns changed;  // the load, where it is not to be taken as it is
+  if (box_.shear) {
+    changed = without_sliding_springs(stage, weights, load);
+  } else if (motion_.dofs().bodies() > 0) {
+    changed = load;
+  }
   {
     const PhaseTimer timer(phases_, Phase::solve);
     solver_->bind(system);
-    stage.report =
-        solver_->solve(box_.shear ? without_sliding_springs(stage, weights, load) : load, guess);
+    resistance_.scale_load(changed);
+    resistance_.scale_velocity(guess);
+    stage.report = solver_->solve(changed.empty() ? load : changed, guess);
+    resistance_.unscale_velocity(guess);
   }
   note(stage.report);
   const double shift = weights.inertia + constants_.zeta_0;

@@ -57,10 +57,11 @@ void Dynamics<D>::judge_null_motions(const Stage<D>& stage) {
             transverse_cure,
         SolverError::Cause::singular);
   const std::string others = std::string(", mass (fluid.mass) or ") + transverse_cure;
-  const Unknowns f = force(stage);
+  Unknowns f = force(stage);
+  resistance_.scale_load(f);
   const Share share = motion_.dofs().share();
   const double least = no_work * norm_of_forces(f, share, stage.network);
-  auto u = mobile.null_motions().begin();  // group by group
+  auto u = resistance_.system().null_motions().begin();  // group by group
   for (const FreeGroup& group : groups)
     for (const auto end = u + group.motions; u != end; ++u)
       if (std::abs(share.dot(*u, f, D)) > least)

@@ -34,27 +34,20 @@ auto Dynamics<D>::without_sliding_springs(const Stage<D>& stage, const StepWeigh
   return load;
 }
 
-/// Relative to the flow at their places the nodes that translations move do not move in the mean: the same wherever the
-/// box is cut.
+/// Relative to the flow at their places particles do not move in the mean: the same wherever the box is cut.
 template <int D>
 void Dynamics<D>::add_mean_flow(const Stage<D>& stage, Unknowns& q) {
   const Share own = particles_.owned();
   Vec<D> mean{};
-  const auto add = [&](std::int32_t particle, const Vec<D>& arm) {
-    const auto i = index(particle);
-    if (!own.owns(i)) return;
-    mean += stage.box.flow_velocity(stage.position[i] - arm);
+  for (std::int64_t row = 0; row < motion_.dofs().mobile(); ++row) {
+    const auto i = index(motion_.dofs().particle_of(index(row)));
+    if (!own.owns(i)) continue;
+    mean += stage.box.flow_velocity(stage.position[i]);
     mean[box_.shear->flow] += stage.crossed[i] * stage.box.sliding;
-  };
-  for (const std::int32_t particle : motion_.dofs().free_particles()) add(particle, {});
-  for (std::size_t b = 0; b < index(motion_.dofs().bodies()); ++b) {
-    const std::int32_t first = motion_.dofs().constituents(b).front();
-    add(first, stage.arms[index(first)]);
   }
-  const Translations translations = motion_.dofs().translations();
   own.ranks->sum(std::span(mean.x));
-  mean *= 1.0 / static_cast<double>(translations.count(q.size(), motion_.dofs().share()));
-  translations.add(mean.x, q);
+  mean *= 1.0 / static_cast<double>(motion_.dofs().mobile());
+  motion_.dofs().translations().add(mean.x, q);
 }
 
 #define ODPD_INSTANTIATE(D)                                          \

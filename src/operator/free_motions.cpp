@@ -209,14 +209,9 @@ class GroupMotions {
         dofs_(dofs),
         arms_(arms),
         body_(dofs),
-        node_(index(dofs.mobile()), 0),
         at_(index(dofs.mobile())),
         seen_(index(dofs.mobile()), 0),
-        body_seen_(index(dofs.bodies()), 0) {
-    std::size_t free = 0;
-    for (std::size_t s = 0; s < node_.size(); ++s)
-      node_[s] = body_[s] < 0 ? dofs.free_node(free++) : dofs.body_node(index(body_[s]));
-  }
+        body_seen_(index(dofs.bodies()), 0) {}
 
   void add_to(FreeMotions& found, std::size_t root) {
     unfold(root);
@@ -229,9 +224,12 @@ class GroupMotions {
     found.motions += free.cols();
     if (found.motions > most_free_motions) return found.basis.clear();
     for (Eigen::Index k = 0; k < free.cols(); ++k) {
-      std::vector<double> u(index(dofs_.unknowns()), 0.0);
+      std::vector<double> u(at_.size() * D, 0.0);
       for (Eigen::Index c = 0; c < free.rows(); ++c)
-        add(first + static_cast<int>(c), free(c, k), u);
+        for (const std::size_t row : rows_) {
+          const Vec<D> v = free(c, k) * velocity(first + static_cast<int>(c), at_[row]);
+          for (std::size_t a = 0; a < D; ++a) u[row * D + a] += v.x[a];
+        }
       found.basis.push_back(std::move(u));
     }
   }
@@ -239,10 +237,9 @@ class GroupMotions {
  private:
   static constexpr int motions = D + rotation_components<D>;
 
-  /// Positions of the group's particles along its links, its movers, and their centre.
+  /// Positions of the group's particles along its links, and their centre.
   void unfold(std::size_t root) {
     rows_.assign(1, root);
-    movers_.clear();
     at_[root] = resistance_.position(root);
     seen_[root] = 1;
     const auto reach = [&](std::size_t row, const Vec<D>& there) {
@@ -256,21 +253,17 @@ class GroupMotions {
       for (const auto& link : resistance_.links(row))
         if (seen_[index(link.node)] == 0 && resistance_.ties(link))
           reach(index(link.node), at_[row] + way(resistance_, row, link));
-      if (body_[row] < 0) {
-        movers_.push_back({at_[row], node_[row], -1});
-        continue;
-      }
+      if (body_[row] < 0) continue;
       const auto body = index(body_[row]);
       if (body_seen_[body] != 0) continue;
       body_seen_[body] = 1;
       const Vec<D> centre = at_[row] - arms_[index(dofs_.particle_of(row))];
       for (const std::int32_t p : dofs_.constituents(body))
         reach(index(dofs_.mobile_of(index(p))), centre + arms_[index(p)]);
-      movers_.push_back({centre, node_[row], body_[row]});
     }
     Vec<D> sum{};
-    for (const Mover& m : movers_) sum += m.centre;
-    centre_ = (1.0 / static_cast<double>(movers_.size())) * sum;
+    for (const std::size_t row : rows_) sum += at_[row];
+    centre_ = (1.0 / static_cast<double>(rows_.size())) * sum;
   }
 
   /// Motion c of a point at r: translations, then rotations about the centre.
@@ -278,14 +271,6 @@ class GroupMotions {
     Vec<D> unit{};
     unit[c < D ? c : c - D] = 1.0;
     return c < D ? unit : swing(unit, r - centre_);
-  }
-  /// Motion c of the unknowns, times a.
-  void add(int c, double a, std::vector<double>& u) const {
-    for (const Mover& m : movers_) {
-      const Vec<D> v = velocity(c, m.centre);
-      for (std::size_t k = 0; k < D; ++k) u[m.node * D + k] += a * v.x[k];
-      if (c >= D && m.body >= 0) u[index(m.body) * D + index(c - D)] += a;
-    }
   }
 
   /// Of a force at an arm: its power in each of the motions.
@@ -334,7 +319,7 @@ class GroupMotions {
     return found;
   }
 
-  /// Combinations of the motions from `first` on, orthonormal over the unknowns, that cost nothing: columns.
+  /// Combinations of the motions from `first` on, orthonormal over the particles, that cost nothing: columns.
   Eigen::MatrixXd without_dissipation(int first) const {
     const int count = motions - first;
     const Eigen::MatrixXd unit = orthonormal(first);
@@ -359,19 +344,18 @@ class GroupMotions {
     return left;
   }
 
-  /// Combinations of the motions from `first` on, orthonormal over the unknowns; a line does not turn about itself.
+  /// Combinations of the motions from `first` on, orthonormal over the particles; a line does not turn about itself.
   Eigen::MatrixXd orthonormal(int first) const {
     const int count = motions - first;
     Eigen::Matrix<double, motions, motions> products;
     products.setZero();
-    for (const Mover& m : movers_) {
-      Eigen::Matrix<double, D, motions> of_mover;
+    for (const std::size_t row : rows_) {
+      Eigen::Matrix<double, D, motions> of_row;
       for (int c = 0; c < motions; ++c) {
-        const Vec<D> v = velocity(c, m.centre);
-        for (int k = 0; k < D; ++k) of_mover(k, c) = v[k];
-        if (c >= D && m.body >= 0) products(c, c) += 1.0;
+        const Vec<D> v = velocity(c, at_[row]);
+        for (int k = 0; k < D; ++k) of_row(k, c) = v[k];
       }
-      products.noalias() += of_mover.transpose().lazyProduct(of_mover);
+      products.noalias() += of_row.transpose().lazyProduct(of_row);
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> sizes(
         products.bottomRightCorner(count, count));
@@ -386,22 +370,14 @@ class GroupMotions {
     return unit;
   }
 
-  struct Mover {
-    Vec<D> centre;
-    std::size_t node;
-    std::int32_t body;  // -1: a particle
-  };
-
   const Resistance<D>& resistance_;
   const DofMap<D>& dofs_;
   std::span<const Vec<D>> arms_;
   Membership<D> body_;
-  std::vector<std::size_t> node_;  // per mobile particle
   std::vector<Vec<D>> at_;         // per mobile particle
   std::vector<char> seen_;         // per mobile particle
   std::vector<char> body_seen_;    // per body
   std::vector<std::size_t> rows_;  // of the group
-  std::vector<Mover> movers_;      // of the group
   Vec<D> centre_{};
 };
 

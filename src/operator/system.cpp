@@ -42,7 +42,7 @@ std::vector<std::vector<double>> System::null_space() const {
   const Translations moved = translations();
   for (std::size_t c = 0; translations_are_null() && c < index(moved.components); ++c) {
     std::vector<double> unit(index(moved.components), 0.0);
-    unit[c] = 1.0 / std::sqrt(static_cast<double>(moved.count(index(size()), share())));
+    unit[c] = 1.0 / std::sqrt(moved.squares(index(size()), share()));
     basis.emplace_back(index(size()), 0.0);
     moved.add(unit, basis.back());
   }

@@ -152,7 +152,7 @@ void fill(const BlockCsr& a, Mat matrix) {
 /// The normalised translations.
 MatNullSpace translations(const System& system) {
   const Translations t = system.translations();
-  const double one = 1.0 / std::sqrt(static_cast<double>(t.nodes));
+  const double one = 1.0 / std::sqrt(t.squares(index(system.size())));
   std::vector<::Vec> modes(index(t.components));
   for (std::size_t k = 0; k < modes.size(); ++k) {
     ::Vec& mode = modes[k];

@@ -130,6 +130,7 @@ class Instant {
     system = &dynamics.assemble(stage, {});
     load = dynamics.force(stage);
     for (std::size_t k = 0; k < load.size(); ++k) load[k] += xi[k];
+    rigid().scale_load(load);
   }
 
   odpd::Scene<D> scene;
@@ -140,6 +141,7 @@ class Instant {
       nullptr;  ///< what the solvers get: `resistance` unless there are bodies
 
   const odpd::Resistance<D>& resistance() const { return dynamics.resistance(); }
+  const odpd::RigidResistance<D>& rigid() const { return dynamics.rigid_resistance(); }
 };
 
 /// The instant of these arguments, made once in a program: filling and relaxing a box takes longer
@@ -205,6 +207,7 @@ void expect_noise_covariance(const Instant<D>& instant, const odpd::System& syst
     std::vector<odpd::Vec<D>> force(instant.stage.position.size());
     odpd::add_edge_forces<D>(instant.stage.network, on_edges, force);
     dofs.gather(instant.stage.arms, force, xi);
+    instant.rigid().scale_load(xi);
     std::array<double, K> z{};
     for (std::size_t k = 0; k < K; ++k) z[k] = support::dot(a[k], xi) / std::sqrt(2.0 * kT / dt);
     for (std::size_t k = 0; k < K; ++k) {

@@ -38,10 +38,10 @@ INSTANTIATE_TEST_SUITE_P(All, Bodies,
                                   std::to_string(std::get<2>(test.param)) + "D";
                          });
 
-// P by its definition, from poses and unknowns, not by DofMap.
+// P by its definition, from poses and the unknowns of `system`, not by DofMap.
 template <int D>
-std::vector<Vec<D>> rigid_velocities(const contract::Instant<D>& instant,
-                                     const std::vector<double>& x) {
+std::vector<Vec<D>> rigid_velocities(const contract::Instant<D>& instant, std::vector<double> x) {
+  instant.rigid().unscale_velocity(x);
   const auto& particles = instant.scene.particles();
   const odpd::DofMap<D> dofs(particles);
   const auto bodies = static_cast<std::size_t>(dofs.bodies());
@@ -71,6 +71,44 @@ std::vector<Vec<D>> rigid_velocities(const contract::Instant<D>& instant,
   return v;
 }
 
+// What x and y have in common along turns that move nobody.
+template <int D>
+double unused_part(const contract::Instant<D>& instant, const std::vector<double>& x,
+                   const std::vector<double>& y) {
+  const odpd::RigidSites<D>& sites = instant.rigid().sites();
+  double sum = 0.0;
+  for (std::size_t b = 0; b < static_cast<std::size_t>(sites.bodies()); ++b)
+    for (std::size_t row = 0; row < D; ++row)
+      for (std::size_t col = 0; col < D; ++col)
+        sum += x[b * D + row] * sites.unused(b)[row * D + col] * y[b * D + col];
+  return sum;
+}
+
+// So norms are those of velocities and forces of particles, in the same units whatever the body.
+TEST_P(Bodies, UnknownsMapOrthonormallyToParticles) {
+  run([&]<int D>(const contract::Instant<D>& instant) {
+    const auto n = static_cast<std::size_t>(instant.system->size());
+    const auto x = support::random_numbers(n, 3), y = support::random_numbers(n, 4);
+    const auto vx = rigid_velocities(instant, x), vy = rigid_velocities(instant, y);
+    double product = unused_part(instant, x, y);
+    for (std::size_t i = 0; i < vx.size(); ++i) product += dot(vx[i], vy[i]);
+    EXPECT_NEAR(product, support::dot(x, y), 1e-12 * support::norm(x) * support::norm(y));
+    // The transpose: power is the same either way.
+    std::vector<double> load, kept = x;
+    odpd::DofMap<D>(instant.scene.particles()).gather(instant.stage.arms, vy, load);
+    instant.rigid().scale_load(load);
+    double power = 0.0;
+    for (std::size_t i = 0; i < vx.size(); ++i) power += dot(vx[i], vy[i]);
+    EXPECT_NEAR(support::dot(x, load), power, 1e-12 * support::norm(x) * support::norm(y));
+    // Back and forth.
+    instant.rigid().unscale_velocity(kept);
+    instant.rigid().scale_velocity(kept);
+    double lost = 0.0, expected = unused_part(instant, x, x);
+    for (std::size_t k = 0; k < n; ++k) lost += (kept[k] - x[k]) * (kept[k] - x[k]);
+    EXPECT_NEAR(lost, expected, 1e-12 * support::dot(x, x));
+  });
+}
+
 TEST_P(Bodies, TheSystemIsPTRP) {
   run([&]<int D>(const contract::Instant<D>& instant) {
     const odpd::System& system = *instant.system;
@@ -79,10 +117,7 @@ TEST_P(Bodies, TheSystemIsPTRP) {
     auto x = support::random_numbers(n, 1), y = support::random_numbers(n, 2);
     const auto ax = contract::product(system, x);
     // y . A x = P y . R P x, and the unused components stand alone.
-    double unused = 0.0;
-    for (std::size_t b = 0; b < 2; ++b)
-      for (std::size_t c = odpd::rotation_components<D>; c < D; ++c)
-        unused += x[b * D + c] * y[b * D + c];
+    const double unused = unused_part(instant, x, y);
     std::vector<Vec<D>> force(instant.stage.position.size());
     const auto vx = rigid_velocities(instant, x), vy = rigid_velocities(instant, y);
     odpd::add_friction_forces<D>(instant.stage.network, vx, force);

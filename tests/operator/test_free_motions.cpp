@@ -149,7 +149,7 @@ TYPED_TEST(FreeMotionsTest, BodiesTurnWithTheirDrop) {
   std::vector<Vec<D>> arms(fluid.particles.position.size());
   RigidBody<D> body;
   for (int corner = 0; corner <= D; ++corner) {
-    body.frame.push_back(support::uniform_vec<D>(corner == 0 ? -0.3 : 0.1));
+    body.frame.push_back(support::uniform_vec<D>(corner == 0 ? -0.4 : 0.0));
     if (corner > 0) body.frame.back()[corner - 1] += 0.4;
     arms.push_back(body.frame.back());
   }

@@ -63,6 +63,27 @@ TEST(Translations, SumsAreTheTransposeOfAdding) {
   }
 }
 
+// Weights 2 and 3 of the last two nodes: columns E = (1, ..., 1, 2, 3).
+TEST(Translations, WeighTheLastNodes) {
+  const std::vector<double> weights{2.0, 3.0};
+  const Translations t{2, 100, 2, weights};
+  EXPECT_EQ(t.squares(240), 98.0 + 4.0 + 9.0);
+  const std::vector<double> before = waves(240);
+  std::vector<double> x(before), column(240, 0.0);
+  t.add(std::vector<double>{1.0, 0.0}, column);
+  EXPECT_EQ(column[38], 0.0);
+  EXPECT_EQ(column[40], 1.0);
+  EXPECT_EQ(column[236], 2.0);
+  EXPECT_EQ(column[238], 3.0);
+  t.remove_mean(x);
+  double part = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) part += before[i] * column[i] / 111.0;
+  EXPECT_GT(std::abs(part), 0.1);
+  for (std::size_t i = 0; i < x.size(); i += 2)
+    EXPECT_NEAR(x[i], before[i] - part * column[i], 1e-14) << i;
+  for (const double sum : t.sums(x)) EXPECT_NEAR(sum, 0.0, 1e-12);
+}
+
 TEST(Translations, HaveTheSameBitsOnAnyThreadCount) {
   const Translations t{3, 700000, 2};
   std::vector<double> one = waves(3 * 700000);

@@ -111,6 +111,7 @@ class Dynamics {
 
   /// R on the mobile particles: free particles and constituents.
   const Resistance<D>& resistance() const { return resistance_.mobile(); }
+  const RigidResistance<D>& rigid_resistance() const { return resistance_; }
   const PairList<D>& pair_list() const { return list_; }
   const DofMap<D>& dofs() { return motion_.dofs(); }
   Solver& solver() { return *solver_; }

@@ -23,7 +23,7 @@ struct FreeGroup {
   std::int64_t motions = 0;
 };
 
-/// Each motion is a vector of all unknowns, and each projection passes through all of them: more are refused.
+/// Each motion is a vector over all particles that move, and each projection passes through all of them: more are refused.
 inline constexpr std::int64_t most_free_motions = 64;
 
 /// How messages name the drag that resists them.
@@ -34,7 +34,8 @@ struct FreeMotions {
   /// With at least one free motion, in the order of their first particles.
   std::vector<FreeGroup> groups;
   std::int64_t motions = 0;  ///< of all groups
-  /// Orthonormal vectors of unknowns, group by group; empty with more than most_free_motions.
+  /// Orthonormal vectors of D velocity components per mobile particle, group by group; empty with more than
+  /// most_free_motions.
   std::vector<std::vector<double>> basis;
 };
 

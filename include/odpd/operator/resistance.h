@@ -72,7 +72,7 @@ class Resistance : public System {
   int periodic_directions() const override { return box_.periodic_directions(); }
   bool translations_are_null() const override { return translations_are_null_; }
   bool holds_centre_of_mass() const override { return hold_ && !translations_are_null_; }
-  /// Vectors of unknowns, with bodies too: those of RigidResistance.
+  /// With bodies, motions in which these are rigid.
   std::span<const std::vector<double>> null_motions() const override { return free_.basis; }
   std::span<const FreeGroup> free_groups() const { return free_.groups; }
   std::uint64_t generation() const override { return generation_; }

@@ -1,11 +1,13 @@
 #pragma once
 // The resistance operator with rigid bodies, P^T (R + shift) P: R on the mobile particles (free ones and constituents,
-// operator/resistance.h), P the map of operator/dof_map.h. With inertia as the shift, P^T shift P holds the mass and the
-// tensor of inertia of each body, from its constituents. The unused component of an angular velocity in 2D gets a one on
-// the diagonal.
+// operator/resistance.h), P the orthonormal map from the unknowns of operator/rigid_sites.h: as P^T P = 1 the norm of a
+// residual is that of forces on particles, an inertia as the shift stays one, and a translation moves V of a body of m sites
+// by m^(1/2). `scale_load` and its like lead from the (F, T) and (V, w) of operator/dof_map.h to these unknowns and back.
+// What moves no site, as the unused component of an angular velocity in 2D, gets a one on the diagonal.
 #include <vector>
 
 #include "odpd/operator/resistance.h"
+#include "odpd/operator/rigid_sites.h"
 
 namespace odpd {
 
@@ -29,10 +31,30 @@ class RigidResistance : public System {
   }
   /// R on the mobile particles.
   const Resistance<D>& mobile() const { return mobile_; }
+  const RigidSites<D>& sites() const { return sites_; }
+  /// The mobile particle belongs to a body.
+  bool is_site(std::size_t row) const { return node_[row] < 0; }
+  /// Of a site.
+  std::size_t body_of(std::size_t row) const { return index(-node_[row] - 1); }
+  /// Node of a free mobile particle; negative for a site.
+  std::int32_t node_of(std::size_t row) const { return node_[row]; }
+  /// Node of V of a body; that of its w is its number.
+  std::size_t linear_node(std::size_t body) const { return dofs_->body_node(body); }
+  /// Diagonal block of A of all unknowns of each body, w before V: 2D x 2D, row-major.
+  void body_blocks(std::vector<double>& blocks) const;
+
+  // In place, size() numbers; nothing without bodies.
+
+  /// Unknowns' loads from forces and torques.
+  void scale_load(std::span<double> load) const;
+  /// Unknowns from velocities and angular velocities.
+  void scale_velocity(std::span<double> q) const;
+  /// Velocities and angular velocities from unknowns.
+  void unscale_velocity(std::span<double> y) const;
 
   int block_size() const override { return D; }
   std::int64_t nodes() const override { return dofs_->nodes(); }
-  Translations translations() const override { return dofs_->translations(); }
+  Translations translations() const override;
   void apply(std::span<const double> x, std::span<double> y) const override;
   void block_diagonal(std::span<double> blocks) const override;
   const BlockCsr& matrix() const override;
@@ -42,25 +64,26 @@ class RigidResistance : public System {
   int periodic_directions() const override { return mobile_.periodic_directions(); }
   bool translations_are_null() const override { return mobile_.translations_are_null(); }
   bool holds_centre_of_mass() const override { return mobile_.holds_centre_of_mass(); }
-  std::span<const std::vector<double>> null_motions() const override {
-    return mobile_.null_motions();
-  }
+  std::span<const std::vector<double>> null_motions() const override { return null_motions_; }
   std::uint64_t generation() const override { return mobile_.generation(); }
   Share share() const override { return dofs_->share(); }
 
  private:
-  /// Unit responses of one mobile particle, a row of R, to the nodes that move it: its velocity is the sum of column * unknown.
-  struct Mover {
-    std::size_t node;
-    typename Resistance<D>::Block map;  // row-major, D velocity components by D unknowns
-  };
-  std::vector<Mover> movers(std::size_t row) const;
-  void add_unused(std::size_t node, double* block) const;
+  void to_particles(std::span<const double> y, std::span<double> v) const;
+  void from_particles(std::span<const double> f, std::span<double> y) const;
+  template <class Change>
+  void for_each_body(std::span<double> x, const Change& change) const;
+  /// X(a) S of a site: what y_w adds to its velocity.
+  typename Resistance<D>::Block lever(std::size_t b, std::size_t site) const;
 
   Resistance<D> mobile_;
   const DofMap<D>* dofs_ = nullptr;
-  std::vector<Vec<D>> arms_;
-  std::vector<std::int32_t> node_;  // per mobile particle: its node, or -(body + 1)
+  RigidSites<D> sites_;
+  std::vector<std::int32_t> node_;     // per mobile particle: its node, or -(body + 1)
+  std::vector<std::int32_t> site_of_;  // per mobile particle of a body: its number in sites_
+  std::vector<double> root_mass_;      // per body
+  std::vector<std::vector<double>> null_motions_;
+  mutable std::vector<double> velocity_, force_;  // of the mobile particles, in apply
   mutable BlockCsr matrix_;
   mutable std::uint64_t matrix_generation_ = 0;
 };

@@ -1,10 +1,12 @@
 #pragma once
-// The translations E of a vector of unknowns, `block` numbers per node: column c moves component c of every velocity by 1.
+// The translations E of a vector of unknowns, `block` numbers per node: column c moves component c of every velocity by 1, or
+// by the node's weight.
 //
 //   sums(x) = E^T x,   add(a, x): x := x + E a,   remove_mean(x): x := x - E (E^T E)^-1 E^T x
 //
 // Unknowns that a translation leaves alone stand in front: whole nodes (angular velocities of rigid bodies) and the first
-// components of a node (spins). A scalar field has block = components = 1, and its translation is the constant.
+// components of a node (spins). A scalar field has block = components = 1, and its translation is the constant. Weights are
+// for unknowns that are velocities in units of their own (operator/rigid_resistance.h).
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,13 +20,19 @@ struct Translations {
   int block = 1;           ///< unknowns per node
   std::int64_t nodes = 0;  ///< the last ones of the vector
   int components = 1;      ///< the last ones of a node
+  /// Of the last nodes, as many as there are; all others weigh 1. Must outlive the use of this value.
+  std::span<const double> weights = {};
 
+  double weight(std::int64_t n) const {
+    const std::int64_t k = n - nodes + std::ssize(weights);
+    return k < 0 ? 1.0 : weights[index(k)];
+  }
   /// First of the translated unknowns of node n of these, in the part of `x` that belongs to them.
   std::size_t first(std::int64_t n) const { return index(n * block + block - components); }
   // `share`: the nodes of this rank among all of the vector (System::share).
 
-  /// Nodes of all ranks that are translated, for a vector of this size.
-  std::int64_t count(std::size_t size, const Share& share) const;
+  /// E^T E, the same number for each column, over all ranks, for a vector of this size: without weights the nodes.
+  double squares(std::size_t size, const Share& share = {}) const;
   /// Node by node, in order.
   std::vector<double> sums(std::span<const double> x, const Share& share = {}) const;
   /// a: `components` numbers.
@@ -38,6 +46,7 @@ struct Translations {
   };
   /// Which of the nodes that are translated belong to the share.
   Range own(std::size_t size, const Share& share) const;
+  double squares(const Range& range) const;
   std::size_t in_front(std::size_t size) const { return size - index(nodes * block); }
 };
 
