@@ -24,7 +24,7 @@ class CgEngine {
   virtual void load(const StateReader&) {}
 };
 
-/// Null unless the system is a Resistance, with a node of D velocities for each particle that moves.
+/// Null unless the system is a Resistance or a RigidResistance.
 std::unique_ptr<CgEngine> make_mixed_cg(const System& system, const SolverOptions& options);
 
 /// Residuals of conjugate gradients rise and fall, but never by this much on a regular system.

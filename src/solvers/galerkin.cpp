@@ -11,6 +11,11 @@ namespace odpd {
 
 namespace {
 
+// Of a body beside the fluid, per radius in units of the grid's spacing. A body smaller than a cell strains little on the grid
+// anyway, and more would only be in the way of the fluid around; one of several cells should be as stiff as the smoother
+// bears. Between one and three iterations are the same within one (docs/performance.md).
+constexpr double stiffness_per_radius = 2.0;
+
 template <int D>
 using Triangle = std::array<float, index(GridShape<D>::triangle)>;
 
@@ -27,8 +32,10 @@ Triangle<D> triangle_of(const typename Resistance<D>::Block& block) {
 template <int D>
 class Elements {
  public:
-  Elements(const GridShape<D>& shape, const Resistance<D>& resistance)
-      : shape_(shape), resistance_(resistance) {
+  Elements(const GridShape<D>& shape, const Resistance<D>& resistance,
+           const RigidResistance<D>* rigid, double moment)
+      : shape_(shape), resistance_(resistance), rigid_(rigid) {
+    if (rigid != nullptr) stiffen(moment / (2.0 * D * (D + 2)));
     std::int64_t cells = 1;
     for (int c = 0; c < 4; ++c) {
       const auto i = index(c);
@@ -56,6 +63,35 @@ class Elements {
   static constexpr int triangle = GridShape<D>::triangle;
   static constexpr int size = element_floats<D>;
 
+  /// inside_ of a site with this tau, in units of the grid, which shear tilts.
+  void stiffen(double tau) {
+    std::array<Vec<D>, D> axis;  // the grid's, per axis of space
+    for (std::size_t c = 0; c < D; ++c) {
+      Vec<D> unit{};
+      unit.x[c] = 1.0;
+      axis[c] = resistance_.box().straightened(unit);
+      for (std::size_t a = 0; a < D; ++a) axis[c].x[a] *= shape_.per_length.x[a];
+    }
+    const RigidSites<D>& sites = rigid_->sites();
+    for (std::size_t b = 0; b < index(sites.bodies()); ++b) {
+      double radius = 0.0;  // in units of the grid
+      for (auto s = index(sites.begin(b)); s < index(sites.end(b)); ++s) {
+        Vec<D> arm = sites.arms()[s];
+        for (std::size_t c = 0; c < D; ++c) arm.x[c] *= shape_.per_length.x[c];
+        radius = std::max(radius, norm(arm));
+      }
+      stiffness_.push_back(static_cast<float>(stiffness_per_radius * radius));
+    }
+    float* out = inside_.data();
+    for (std::size_t a = 0; a < D; ++a)
+      for (std::size_t b = a; b < D; ++b)
+        for (std::size_t c = 0; c < D; ++c)
+          for (std::size_t d = c; d < D; ++d) {
+            double sum = axis[c].x[a] * axis[d].x[b] + axis[d].x[a] * axis[c].x[b];
+            for (std::size_t k = 0; c == d && k < D; ++k) sum += axis[k].x[a] * axis[k].x[b];
+            *out++ = static_cast<float>(tau * sum);
+          }
+  }
   void place_nodes() {
     positions_.resize(4 * resistance_.nodes());
     parallel_for(resistance_.nodes(), [&](std::int64_t n) {
@@ -69,6 +105,10 @@ class Elements {
 
   const GridShape<D>& shape_;
   const Resistance<D>& resistance_;
+  const RigidResistance<D>* rigid_;
+  std::vector<float> stiffness_;  // per body
+  std::array<float, index(triangle* triangle)>
+      inside_{};  // moments of a site, as kernels want them
   ElementView view_{};
   EdgeView edges_{};
   FloatArray positions_, sums_;
@@ -84,9 +124,11 @@ void Elements<D>::add_node(std::int64_t n) {
   const auto links = resistance_.links(node);
   Triangle<D> anchor{};
   if (!resistance_.anchors().empty()) anchor = triangle_of<D>(resistance_.anchors()[node]);
+  const bool of_body = rigid_ != nullptr && rigid_->is_site(node);
   multilevel_kernels().add_node[D - 2](
       view_, edges_, n, reinterpret_cast<const std::int32_t*>(links.data()), std::ssize(links),
-      resistance_.anchors().empty() ? nullptr : anchor.data());
+      resistance_.anchors().empty() ? nullptr : anchor.data(), of_body ? inside_.data() : nullptr,
+      of_body ? stiffness_[rigid_->body_of(node)] : 0.0F);
 }
 
 template <int D>
@@ -145,14 +187,21 @@ GridPosition<D> locate(const GridShape<D>& shape, const double* position) {
 }
 
 template <int D>
-FrictionSpread friction_spread(const Resistance<D>& resistance) {
+FrictionSpread friction_spread(const Resistance<D>& resistance, const RigidResistance<D>* rigid) {
   const Share share = resistance.share();
-  std::array<double, 4> sums{};
-  auto& [moment, total, ties, tied] = sums;
+  std::array<double, 5> sums{};
+  auto& [moment, total, ties, tied, counted] = sums;
+  const bool of_free = rigid != nullptr && rigid->sites().sites() < resistance.nodes();
+  const std::int64_t looked_at =
+      resistance.nodes() - (of_free ? rigid->sites().sites() : std::int64_t{0});
   // Some hundred particles tell it well enough.
-  const std::int64_t step = std::max<std::int64_t>(1, resistance.nodes() / 256);
-  for (std::int64_t n = 0; n < resistance.nodes(); n += step) {
+  const std::int64_t step = std::max<std::int64_t>(1, looked_at / 256);
+  std::int64_t until_next = 0;
+  for (std::int64_t n = 0; n < resistance.nodes(); ++n) {
+    if ((of_free && rigid->is_site(index(n))) || until_next-- > 0) continue;
+    until_next = step - 1;
     if (!share.owns(n)) continue;
+    counted += 1.0;
     const auto node = index(n);
     const Vec<D> own = resistance.position(node);
     double sum = 0.0, squares = 0.0;
@@ -173,12 +222,13 @@ FrictionSpread friction_spread(const Resistance<D>& resistance) {
   }
   share.ranks->sum(std::span(sums));
   if (!(total > 0.0)) return {};
-  return {std::sqrt(moment / total), ties / tied};
+  return {std::sqrt(moment / total), ties / tied, moment / counted};
 }
 
 template <int D>
-GridOperator<D> galerkin(const Resistance<D>& resistance, const GridShape<D>& shape) {
-  Elements<D> elements(shape, resistance);
+GridOperator<D> galerkin(const Resistance<D>& resistance, const GridShape<D>& shape,
+                         const RigidResistance<D>* rigid, double moment) {
+  Elements<D> elements(shape, resistance, rigid, moment);
   const Share share = resistance.share();
   for (std::int64_t n = share.first; n < share.end(resistance.nodes()); ++n) elements.add_node(n);
   elements.add_ranks(*share.ranks);
@@ -191,9 +241,11 @@ template Vec<2> grid_position<2>(const Resistance<2>&, std::size_t);
 template Vec<3> grid_position<3>(const Resistance<3>&, std::size_t);
 template GridPosition<2> locate<2>(const GridShape<2>&, const double*);
 template GridPosition<3> locate<3>(const GridShape<3>&, const double*);
-template FrictionSpread friction_spread<2>(const Resistance<2>&);
-template FrictionSpread friction_spread<3>(const Resistance<3>&);
-template GridOperator<2> galerkin<2>(const Resistance<2>&, const GridShape<2>&);
-template GridOperator<3> galerkin<3>(const Resistance<3>&, const GridShape<3>&);
+template FrictionSpread friction_spread<2>(const Resistance<2>&, const RigidResistance<2>*);
+template FrictionSpread friction_spread<3>(const Resistance<3>&, const RigidResistance<3>*);
+template GridOperator<2> galerkin<2>(const Resistance<2>&, const GridShape<2>&,
+                                     const RigidResistance<2>*, double);
+template GridOperator<3> galerkin<3>(const Resistance<3>&, const GridShape<3>&,
+                                     const RigidResistance<3>*, double);
 
 }  // namespace odpd

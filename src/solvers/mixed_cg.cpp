@@ -4,7 +4,9 @@
 //
 // Where the recursive residual has fallen far below that of the last double one, x and r are brought up to date in double
 // and the iteration goes on with its search direction (reliable updates; Clark et al. 2010). On a held system Pi is
-// applied to p and A p. Single precision holds out up to condition numbers of some 1e7; beyond, the attempt gives up.
+// applied to p and A p. With rigid bodies d, r, p are velocities and forces of particles, projected on those in which bodies
+// are rigid (solvers/packed_bodies.h). Single precision holds out up to condition numbers of some 1e7; beyond, the attempt
+// gives up.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -18,6 +20,7 @@
 #include "odpd/core/parallel.h"
 #include "odpd/solvers/backends.h"
 #include "odpd/solvers/multilevel.h"
+#include "odpd/solvers/packed_bodies.h"
 #include "odpd/solvers/preconditioner.h"
 
 namespace odpd {
@@ -64,6 +67,12 @@ class MixedCg : public CgEngine {
   static constexpr std::int64_t triangle = D * (D + 1) / 2;
   enum class Outcome { reached, gave_up, out_of_iterations };
 
+  bool is_site(std::int32_t row) const { return rigid_ != nullptr && rigid_->is_site(index(row)); }
+  /// Node of the system whose unknowns a place holds, -1 for none of its own.
+  std::int32_t unknown_of(std::int64_t place) const {
+    const std::int32_t row = rows_.node_of_place()[index(place)];
+    return rigid_ == nullptr || row < 0 ? row : rigid_->node_of(index(row));
+  }
   bool grid_pays() const;
   void invert_diagonal();
   double true_residual(std::span<const double> b, std::span<const double> x);
@@ -86,9 +95,12 @@ class MixedCg : public CgEngine {
   }
 
   std::string preconditioner_;
-  const Resistance<D>* resistance_ = nullptr;
-  Share share_;  // its nodes
+  const System* system_ = nullptr;
+  const Resistance<D>* resistance_ = nullptr;  // R on the particles that move
+  const RigidResistance<D>* rigid_ = nullptr;  // null without bodies
+  Share share_;                                // nodes of R
   SlicedRows<D> rows_;
+  PackedBodies<D> bodies_;
   Multilevel<D> grid_;
   bool with_grid_ = false;
   std::string note_;
@@ -104,7 +116,9 @@ class MixedCg : public CgEngine {
 
 template <int D>
 void MixedCg<D>::set_up(const System& system) {
-  resistance_ = &dynamic_cast<const Resistance<D>&>(system);
+  system_ = &system;
+  rigid_ = dynamic_cast<const RigidResistance<D>*>(&system);
+  resistance_ = rigid_ != nullptr ? &rigid_->mobile() : &dynamic_cast<const Resistance<D>&>(system);
   share_ = resistance_->share();
   rows_.pack(*resistance_);
   note_.clear();
@@ -117,7 +131,8 @@ void MixedCg<D>::set_up(const System& system) {
   residual_.resize(index(system.size()));
   sums_.resize(index(2 * blocks()));
   invert_diagonal();
-  if (with_grid_) grid_.set_up(*resistance_, rows_);
+  if (rigid_ != nullptr) bodies_.pack(*rigid_, rows_);
+  if (with_grid_) grid_.set_up(*resistance_, rows_, rigid_);
   local_ = grid_.local();
   t_.resize(with_grid_ && local_.size() > 2 ? rows_.vector_size() : 0);
 }
@@ -148,8 +163,8 @@ void MixedCg<D>::invert_diagonal() {
     const std::int32_t node = rows_.node_of_place()[index(place)];
     float* out =
         inverse_.data() + place / slice_places * slice_places * triangle + place % slice_places;
-    typename Resistance<D>::Block m{};
-    if (node >= 0) m = inverse_of(resistance_->diagonal()[index(node)]);
+    typename Resistance<D>::Block m{};  // zero for sites of bodies
+    if (node >= 0 && !is_site(node)) m = inverse_of(resistance_->diagonal()[index(node)]);
     if (std::isnan(m[0]) && share_.owns(std::int64_t{node})) lower(first_bad, node);
     for (std::size_t row = 0; row < D; ++row)
       for (std::size_t col = row; col < D; ++col, out += slice_places)
@@ -163,33 +178,35 @@ void MixedCg<D>::invert_diagonal() {
 /// residual_ := Pi (b - A x); returns its norm.
 template <int D>
 double MixedCg<D>::true_residual(std::span<const double> b, std::span<const double> x) {
-  const auto own = share_.part(x, D);
+  const auto own = system_->share().part(x, D);
   if (share_.ranks->all(std::all_of(own.begin(), own.end(), [](double v) { return v == 0.0; }))) {
     std::copy(b.begin(), b.end(), residual_.begin());
   } else {
-    resistance_->apply(x, residual_);
-    parallel_for(resistance_->size(),
+    system_->apply(x, residual_);
+    parallel_for(system_->size(),
                  [&](std::int64_t i) { residual_[index(i)] = b[index(i)] - residual_[index(i)]; });
   }
-  resistance_->project(residual_);
-  return resistance_->norm(residual_);
+  system_->project(residual_);
+  return system_->norm(residual_);
 }
 
 template <int D>
 void MixedCg<D>::load_residual(double scale) {
   parallel_for(rows_.places(), [&](std::int64_t place) {
-    const std::int32_t node = rows_.node_of_place()[index(place)];
+    const std::int32_t node = unknown_of(place);
     float* const r = r_.data() + place * stride;
     for (std::int64_t c = 0; c < stride; ++c)
       r[c] = node >= 0 && c < D ? static_cast<float>(residual_[index(node * D + c)] / scale) : 0.0F;
   });
+  bodies_.scatter(residual_, scale, r_.data());
 }
 
 /// x += scale d, d = 0.
 template <int D>
 void MixedCg<D>::flush(std::span<double> x, double scale) {
+  bodies_.add_to(x_.data(), scale, x);
   parallel_for(rows_.places(), [&](std::int64_t place) {
-    const std::int32_t node = rows_.node_of_place()[index(place)];
+    const std::int32_t node = unknown_of(place);
     float* const d = x_.data() + place * stride;
     for (std::int64_t c = 0; c < stride; ++c) {
       if (node >= 0 && c < D) x[index(node * D + c)] += scale * static_cast<double>(d[c]);
@@ -214,7 +231,8 @@ double MixedCg<D>::product() {
     sums_[index(block)] = rows_.product(p_.data(), q_.data(), block * block_places, end_of(block));
   });
   const double sum = sum_of_blocks();
-  if (resistance_->holds_centre_of_mass()) project(q_);
+  bodies_.project(q_.data());
+  if (system_->holds_centre_of_mass()) project(q_);
   return sum;
 }
 
@@ -243,19 +261,31 @@ CgSums MixedCg<D>::update(double alpha) {
     total[1] += sums_[index(2 * block + 1)];
   }
   share_.ranks->sum(std::span(total));
-  return {total[0], total[1]};
+  return {total[0], total[1] + bodies_.solve(r_.data(), z_.data())};
 }
 
 /// out = keep z - step D^-1 A in, z = D^-1 r; returns z . A in.
 template <int D>
 double MixedCg<D>::local_step(double keep, double step, const FloatArray& in, FloatArray& out) {
-  parallel_blocks(blocks(), [&](std::int64_t block) {
-    const std::int64_t first = block * block_places, last = end_of(block);
-    rows_.product(in.data(), out.data(), first, last);
+  const auto multiply = [&](std::int64_t block) {
+    rows_.product(in.data(), out.data(), block * block_places, end_of(block));
+  };
+  const auto relax = [&](std::int64_t block) {
     sums_[index(block)] = multilevel_kernels().local[D - 2](
         inverse_.data(), static_cast<float>(keep), static_cast<float>(step), z_.data(), out.data(),
-        first, last);
-  });
+        block * block_places, end_of(block));
+  };
+  if (bodies_.empty()) {
+    parallel_blocks(blocks(), [&](std::int64_t block) {
+      multiply(block);
+      relax(block);
+    });
+  } else {
+    parallel_blocks(blocks(), multiply);
+    bodies_.gather(out.data());
+    parallel_blocks(blocks(), relax);
+    bodies_.subtract(static_cast<float>(step), out.data());
+  }
   return sum_of_blocks();
 }
 
@@ -291,7 +321,8 @@ void MixedCg<D>::turn(double beta) {
         p_.data()[i] = z_.data()[i] + b * p_.data()[i];
     }
   });
-  if (resistance_->holds_centre_of_mass()) project(p_);
+  if (with_grid_) bodies_.project(p_.data());
+  if (system_->holds_centre_of_mass()) project(p_);
 }
 
 /// v := Pi v over the occupied places.
@@ -378,7 +409,7 @@ template <int D>
 Solver::Attempt MixedCg<D>::attempt(std::span<const double> b, std::span<double> x,
                                     double tolerance, std::int64_t most_iterations) {
   Solver::Attempt result;
-  const double goal = tolerance * resistance_->norm(b);
+  const double goal = tolerance * system_->norm(b);
   guess_.assign(x.begin(), x.end());
   Outcome outcome = iterate(b, x, goal, most_iterations, result);
   if (with_grid_ && outcome == Outcome::gave_up) {
@@ -399,7 +430,7 @@ Solver::Attempt MixedCg<D>::attempt(std::span<const double> b, std::span<double>
 template <int D>
 std::int64_t MixedCg<D>::memory_bytes() const {
   const std::int64_t floats = inverse_.size() + 5 * r_.size() + t_.size();
-  return rows_.bytes() + (with_grid_ ? grid_.bytes() : 0) +
+  return rows_.bytes() + bodies_.bytes() + (with_grid_ ? grid_.bytes() : 0) +
          floats * static_cast<std::int64_t>(sizeof(float)) +
          static_cast<std::int64_t>(residual_.size() * sizeof(double));
 }
@@ -407,10 +438,12 @@ std::int64_t MixedCg<D>::memory_bytes() const {
 }  // namespace
 
 std::unique_ptr<CgEngine> make_mixed_cg(const System& system, const SolverOptions& options) {
-  if (dynamic_cast<const Resistance<2>*>(&system) != nullptr)
-    return std::make_unique<MixedCg<2>>(options);
-  if (dynamic_cast<const Resistance<3>*>(&system) != nullptr)
-    return std::make_unique<MixedCg<3>>(options);
+  const auto is = [&]<int D>(std::integral_constant<int, D>) {
+    return dynamic_cast<const Resistance<D>*>(&system) != nullptr ||
+           dynamic_cast<const RigidResistance<D>*>(&system) != nullptr;
+  };
+  if (is(std::integral_constant<int, 2>())) return std::make_unique<MixedCg<2>>(options);
+  if (is(std::integral_constant<int, 3>())) return std::make_unique<MixedCg<3>>(options);
   return nullptr;
 }
 

@@ -43,12 +43,13 @@ LocalPart chebyshev(std::size_t degree, double low, double high, double weight) 
 }  // namespace
 
 template <int D>
-void Multilevel<D>::set_up(const Resistance<D>& resistance, const SlicedRows<D>& rows) {
+void Multilevel<D>::set_up(const Resistance<D>& resistance, const SlicedRows<D>& rows,
+                           const RigidResistance<D>* rigid) {
   ranks_ = resistance.share().ranks;
   const bool outdated =
       grid_.empty() || grid_.null_translations() != resistance.translations_are_null() ||
       shift_ != resistance.shift() || stiffness_time_ != resistance.stiffness_time();
-  if (outdated || last_rate_ < aged * fresh_rate_) build(resistance);
+  if (outdated || last_rate_ < aged * fresh_rate_) build(resistance, rigid);
   place_nodes(resistance, rows);
 }
 
@@ -66,9 +67,9 @@ void Multilevel<D>::note_rate(double decades_per_iteration) {
 }
 
 template <int D>
-void Multilevel<D>::build(const Resistance<D>& resistance) {
+void Multilevel<D>::build(const Resistance<D>& resistance, const RigidResistance<D>* rigid) {
   const Share share = resistance.share();
-  const FrictionSpread friction = friction_spread(resistance);
+  const FrictionSpread friction = friction_spread(resistance, rigid);
   ties_ = friction.ties;
   double spacing =
       friction.range > 0.0 ? spacing_per_range * friction.range : resistance.box().size[0];
@@ -79,7 +80,7 @@ void Multilevel<D>::build(const Resistance<D>& resistance) {
     spacing *= 1.25;
     shape = choose_grid(resistance.box(), resistance.positions(), spacing, share);
   }
-  grid_.set_up(galerkin(resistance, shape), resistance.translations_are_null());
+  grid_.set_up(galerkin(resistance, shape, rigid, friction.moment), resistance.translations_are_null());
   shift_ = resistance.shift();
   stiffness_time_ = resistance.stiffness_time();
   fresh_rate_ = last_rate_ = 0.0;

@@ -6,7 +6,15 @@
 // which is exact for velocities linear in space and keeps the stencil at 3^D points; all edges of a particle share one
 // gradient, so that they are added up before the cell sees them. Friction with particles of known velocity and the shift act
 // at the particle's own position.
+//
+// A rigid body does not strain, which the edges at its sites do not say. So each site adds the dissipation of a stiffer fluid
+// there, which a rotation does not feel:
+//
+//   c tau (2 E : E + (tr E)^2),   E the strain rate at the site,   tau = mean of sum zeta r^2 / (2 D (D + 2)) per free particle
+//
+// with c twice the body's radius in units of the grid's spacing.
 #include "odpd/core/index.h"
+#include "odpd/operator/rigid_resistance.h"
 #include "odpd/solvers/multigrid.h"
 
 namespace odpd {
@@ -26,16 +34,22 @@ Vec<D> grid_position(const Resistance<D>& resistance, std::size_t node);
 template <int D>
 GridPosition<D> locate(const GridShape<D>& shape, const double* position);
 
-/// How friction is spread, by the edges of a sample of the particles, with zeta the trace of an edge's friction.
+/// How friction is spread, by the edges of a sample of the free particles, or of all where none is free, with zeta the trace
+/// of an edge's friction.
 struct FrictionSpread {
   double range = 0.0;  ///< sqrt(sum zeta r^2 / sum zeta) (length); 0 without any
   /// (sum zeta)^2 / sum zeta^2 over the edges of a particle, on average: neighbours that share in its friction; 0 without any
   double ties = 0.0;
+  double moment = 0.0;  ///< mean of sum zeta r^2 of a particle (force length time)
 };
+// `rigid`: the operator around `resistance` where there are rigid bodies, else null.
 template <int D>
-FrictionSpread friction_spread(const Resistance<D>& resistance);
+FrictionSpread friction_spread(const Resistance<D>& resistance,
+                               const RigidResistance<D>* rigid = nullptr);
 
+/// `moment`: that of FrictionSpread, asked for with bodies only.
 template <int D>
-GridOperator<D> galerkin(const Resistance<D>& resistance, const GridShape<D>& shape);
+GridOperator<D> galerkin(const Resistance<D>& resistance, const GridShape<D>& shape,
+                         const RigidResistance<D>* rigid = nullptr, double moment = 0.0);
 
 }  // namespace odpd

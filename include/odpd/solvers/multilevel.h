@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "odpd/core/archive.h"
+#include "odpd/operator/rigid_resistance.h"
 #include "odpd/solvers/multigrid.h"
 
 namespace odpd {
@@ -33,7 +34,9 @@ class Multilevel {
  public:
   /// Positions in the grid, and the grid's operator where it is missing, belongs to another shift or stiffness, or has
   /// aged. Rebuilding costs about as much as one solve to 1e-7.
-  void set_up(const Resistance<D>& resistance, const SlicedRows<D>& rows);
+  /// `rigid`: the operator around `resistance` where there are rigid bodies, else null.
+  void set_up(const Resistance<D>& resistance, const SlicedRows<D>& rows,
+              const RigidResistance<D>* rigid = nullptr);
   /// Decades of residual per iteration of the last solve. Below `aged` times those of the first solve with the present
   /// grid operator, the next set-up builds it anew.
   void note_rate(double decades_per_iteration);
@@ -60,7 +63,7 @@ class Multilevel {
   void load(const StateReader& in);
 
  private:
-  void build(const Resistance<D>& resistance);
+  void build(const Resistance<D>& resistance, const RigidResistance<D>* rigid);
   void place_nodes(const Resistance<D>& resistance, const SlicedRows<D>& rows);
 
   const Communicator* ranks_ = &Communicator::alone();  // each of which has the whole grid
