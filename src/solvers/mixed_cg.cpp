@@ -410,6 +410,7 @@ Solver::Attempt MixedCg<D>::attempt(std::span<const double> b, std::span<double>
                                     double tolerance, std::int64_t most_iterations) {
   Solver::Attempt result;
   const double goal = tolerance * system_->norm(b);
+  bodies_.settle_unused(b, x);
   guess_.assign(x.begin(), x.end());
   Outcome outcome = iterate(b, x, goal, most_iterations, result);
   if (with_grid_ && outcome == Outcome::gave_up) {

@@ -80,7 +80,8 @@ void Multilevel<D>::build(const Resistance<D>& resistance, const RigidResistance
     spacing *= 1.25;
     shape = choose_grid(resistance.box(), resistance.positions(), spacing, share);
   }
-  grid_.set_up(galerkin(resistance, shape, rigid, friction.moment), resistance.translations_are_null());
+  grid_.set_up(galerkin(resistance, shape, rigid, friction.moment),
+               resistance.translations_are_null());
   shift_ = resistance.shift();
   stiffness_time_ = resistance.stiffness_time();
   fresh_rate_ = last_rate_ = 0.0;

@@ -80,12 +80,6 @@ void store_arrow(float* p, typename Arrow<D>::Type v) {
 }  // namespace
 
 template <int D>
-void PackedBodies<D>::clear() {
-  bodies_ = 0;
-  resistance_ = nullptr;
-}
-
-template <int D>
 void PackedBodies<D>::pack(const RigidResistance<D>& resistance, const SlicedRows<D>& rows) {
   constexpr std::int64_t stride = SlicedRows<D>::stride;
   const RigidSites<D>& sites = resistance.sites();
@@ -259,6 +253,17 @@ void PackedBodies<D>::add_to(const float* d, double scale, std::span<double> y) 
       y[b * D + c] += scale * angular[c];
     }
   });
+}
+
+template <int D>
+void PackedBodies<D>::settle_unused(std::span<const double> b, std::span<double> x) const {
+  for (std::size_t body = 0; body < index(bodies_); ++body) {
+    Vec<D> missing;
+    for (std::size_t c = 0; c < D; ++c) missing.x[c] = b[body * D + c] - x[body * D + c];
+    for (std::size_t row = 0; row < D; ++row)
+      for (std::size_t col = 0; col < D; ++col)
+        x[body * D + row] += resistance_->sites().unused(body)[row * D + col] * missing.x[col];
+  }
 }
 
 template <int D>

@@ -19,7 +19,7 @@ namespace odpd {
 namespace {
 
 constexpr const char* no_grid =
-    "preconditioner multilevel is for particles whose velocities are all unknowns there are: "
+    "preconditioner multilevel is for velocities of particles and rigid bodies, not for these unknowns: "
     "block-Jacobi in double precision instead";
 
 class DoubleCg : public CgEngine {

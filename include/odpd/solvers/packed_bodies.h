@@ -21,8 +21,6 @@ class PackedBodies {
  public:
   /// Throws SolverError for a body whose block is singular.
   void pack(const RigidResistance<D>& resistance, const SlicedRows<D>& rows);
-  /// No bodies from now on.
-  void clear();
   bool empty() const { return bodies_ == 0; }
 
   // Node vectors of the packed rows. Only the places of sites are read and written.
@@ -40,6 +38,9 @@ class PackedBodies {
   void scatter(std::span<const double> y, double scale, float* r) const;
   /// y += scale P^T d.
   void add_to(const float* d, double scale, std::span<double> y);
+
+  /// The answer where unknowns move no site: x := b there.
+  void settle_unused(std::span<const double> b, std::span<double> x) const;
 
   std::int64_t bytes() const;
 
