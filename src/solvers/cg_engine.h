@@ -12,6 +12,8 @@ namespace odpd {
 class CgEngine {
  public:
   virtual ~CgEngine() = default;
+  /// It can be set up with this system.
+  virtual bool serves(const System& system) const = 0;
   virtual void set_up(const System& system) = 0;
   /// As Solver::attempt, in at most `most_iterations` iterations.
   /// A failure, unless these did not suffice, leaves x as it was.

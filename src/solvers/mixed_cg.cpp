@@ -1,34 +1,21 @@
-// Conjugate gradients on the packed rows of R (operator/sliced_rows.h) in single precision, for the correction d of
-//
-//   A d = r,   r = Pi (b - A x) in double,   x := x + d
-//
-// Where the recursive residual has fallen far below that of the last double one, x and r are brought up to date in double
-// and the iteration goes on with its search direction (reliable updates; Clark et al. 2010). On a held system Pi is
-// applied to p and A p. With rigid bodies d, r, p are velocities and forces of particles, projected on those in which bodies
-// are rigid (solvers/packed_bodies.h). Single precision holds out up to condition numbers of some 1e7; beyond, the attempt
-// gives up.
+#include "mixed_cg.h"
+
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 
 #include "block_inverse.h"
-#include "cg_engine.h"
-#include "multilevel_kernels.h"
 #include "odpd/core/error.h"
 #include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/solvers/backends.h"
-#include "odpd/solvers/multilevel.h"
-#include "odpd/solvers/packed_bodies.h"
 #include "odpd/solvers/preconditioner.h"
 
 namespace odpd {
 
 namespace {
 
-constexpr std::int64_t slice_places = 16;
-constexpr std::int64_t block_places = 1024;  // of sums, whatever the threads
 // A recursive residual this small beside the last double one is mostly rounding of the operator.
 constexpr double trusted_fall = 1e-4;
 // Aimed at, in units of the tolerance: the double residual may be a little larger than the recursive one.
@@ -49,70 +36,7 @@ constexpr const char* no_grid_for_null_motions =
     "preconditioner multilevel knows no null motions but translations: block-Jacobi instead, while "
     "particles are free to turn";
 
-template <int D>
-class MixedCg : public CgEngine {
- public:
-  explicit MixedCg(const SolverOptions& options) : preconditioner_(options.preconditioner) {}
-
-  void set_up(const System& system) override;
-  Solver::Attempt attempt(std::span<const double> b, std::span<double> x, double tolerance,
-                          std::int64_t most_iterations) override;
-  std::int64_t memory_bytes() const override;
-  std::string note() const override { return note_; }
-  void save(StateWriter& out) const override { grid_.save(out); }
-  void load(const StateReader& in) override { grid_.load(in); }
-
- private:
-  static constexpr std::int64_t stride = SlicedRows<D>::stride;
-  static constexpr std::int64_t triangle = D * (D + 1) / 2;
-  enum class Outcome { reached, gave_up, out_of_iterations };
-
-  bool is_site(std::int32_t row) const { return rigid_ != nullptr && rigid_->is_site(index(row)); }
-  /// Node of the system whose unknowns a place holds, -1 for none of its own.
-  std::int32_t unknown_of(std::int64_t place) const {
-    const std::int32_t row = rows_.node_of_place()[index(place)];
-    return rigid_ == nullptr || row < 0 ? row : rigid_->node_of(index(row));
-  }
-  bool grid_pays() const;
-  void invert_diagonal();
-  double true_residual(std::span<const double> b, std::span<const double> x);
-  void load_residual(double scale);
-  void flush(std::span<double> x, double scale);
-  double product();
-  CgSums update(double alpha);
-  double local_step(double keep, double step, const FloatArray& in, FloatArray& out);
-  double precondition(double rz);
-  void turn(double beta);
-  void project(FloatArray& v);
-  Outcome iterate(std::span<const double> b, std::span<double> x, double goal,
-                  std::int64_t most_iterations, Solver::Attempt& result);
-  std::int64_t blocks() const { return (rows_.places() + block_places - 1) / block_places; }
-  /// A block's part in sums is that of the rank that owns its first node: places are sorted within blocks only.
-  bool owns(std::int64_t block) const { return share_.owns(block * block_places); }
-  double sum_of_blocks();
-  std::int64_t end_of(std::int64_t block) const {
-    return std::min(rows_.places(), (block + 1) * block_places);
-  }
-
-  std::string preconditioner_;
-  const System* system_ = nullptr;
-  const Resistance<D>* resistance_ = nullptr;  // R on the particles that move
-  const RigidResistance<D>* rigid_ = nullptr;  // null without bodies
-  Share share_;                                // nodes of R
-  SlicedRows<D> rows_;
-  PackedBodies<D> bodies_;
-  Multilevel<D> grid_;
-  bool with_grid_ = false;
-  std::string note_;
-  FloatArray inverse_;  // of the diagonal blocks: upper triangles, 16 places side by side
-  FloatArray r_, z_, p_, q_, x_;
-  FloatArray t_;  // of a third and fourth local step
-  LocalPart local_;
-  std::vector<double> residual_;
-  double first_residual_ = 0.0;  // its norm at the start of an attempt
-  std::vector<double> guess_;    // of the attempt at hand, for whoever starts over
-  std::vector<double> sums_;     // two per block
-};
+}  // namespace
 
 template <int D>
 void MixedCg<D>::set_up(const System& system) {
@@ -436,16 +360,10 @@ std::int64_t MixedCg<D>::memory_bytes() const {
          static_cast<std::int64_t>(residual_.size() * sizeof(double));
 }
 
-}  // namespace
-
 std::unique_ptr<CgEngine> make_mixed_cg(const System& system, const SolverOptions& options) {
-  const auto is = [&]<int D>(std::integral_constant<int, D>) {
-    return dynamic_cast<const Resistance<D>*>(&system) != nullptr ||
-           dynamic_cast<const RigidResistance<D>*>(&system) != nullptr;
-  };
-  if (is(std::integral_constant<int, 2>())) return std::make_unique<MixedCg<2>>(options);
-  if (is(std::integral_constant<int, 3>())) return std::make_unique<MixedCg<3>>(options);
-  return nullptr;
+  std::unique_ptr<CgEngine> made = std::make_unique<MixedCg<2>>(options);
+  if (!made->serves(system)) made = std::make_unique<MixedCg<3>>(options);
+  return made->serves(system) ? std::move(made) : nullptr;
 }
 
 }  // namespace odpd

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <typeinfo>
 #include <utility>
 
 #include "cg_engine.h"
@@ -19,11 +18,12 @@ namespace odpd {
 namespace {
 
 constexpr const char* no_grid =
-    "preconditioner multilevel is for velocities of particles and rigid bodies, not for these unknowns: "
-    "block-Jacobi in double precision instead";
+    "preconditioner multilevel is for velocities of particles and rigid bodies, not for these "
+    "unknowns: block-Jacobi in double precision instead";
 
 class DoubleCg : public CgEngine {
  public:
+  bool serves(const System&) const override { return true; }
   void set_up(const System& system) override {
     system_ = &system;
     preconditioner_.set_up(system);
@@ -138,12 +138,9 @@ class ConjugateGradients : public Solver {
       mixed_->set_up(*system_);
     }
   }
-  // Kept from one bind to the next with what it remembers, while the systems are of one kind.
+  // Kept from one bind to the next with what it remembers.
   void choose_engine(const System& system) {
-    const std::type_info& kind = typeid(system);
-    if (kind_ == &kind) return;
-    mixed_ = make_mixed_cg(system, options_);
-    kind_ = &kind;
+    if (mixed_ == nullptr || !mixed_->serves(system)) mixed_ = make_mixed_cg(system, options_);
   }
   Attempt attempt(std::span<const double> b, std::span<double> x, double tolerance) override;
   std::int64_t memory_bytes() const override {
@@ -153,7 +150,6 @@ class ConjugateGradients : public Solver {
 
   std::unique_ptr<CgEngine> mixed_;  // null: the system has no rows of R
   DoubleCg double_;
-  const std::type_info* kind_ = nullptr;
   bool in_double_ = false;
   std::string note_;
 };
