@@ -1,13 +1,18 @@
 #include "odpd/scene/bodies.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numbers>
+#include <optional>
 
 #include "odpd/core/error.h"
 #include "odpd/core/index.h"
 #include "odpd/core/random.h"
+#include "odpd/scene/random_places.h"
 
 namespace odpd {
 
@@ -32,45 +37,79 @@ void turn_at_random(const std::array<double, 4>& u, Rotation<3>& orientation) {
 
 namespace {
 
+// Half the clearance around a body is its own.
 template <int D>
-struct Placer {
-  const Box<D>& box;
-  const Vec<D>& low;
-  const Vec<D>& high;
-  CounterRandom random;
-  struct Taken {
-    Vec<D> centre;
-    double reach;
-  };
-  std::vector<Taken> taken;
+double reach_of(const BodySettings<D>& s) {
+  return s.radius() + 0.5 * s.clearance;
+}
 
-  // Clear of the bodies placed so far, and of the ends of bounded directions.
-  bool fits(const Vec<D>& centre, double reach) const {
-    for (int c = 0; c < D; ++c)
-      if (!box.is_periodic(c) && (centre[c] - low[c] < reach || high[c] - centre[c] < reach))
-        return false;
-    return std::all_of(taken.begin(), taken.end(), [&](const Taken& t) {
-      return norm(box.separation(centre, t.centre)) >= std::max(reach + t.reach, 0.0);
-    });
+template <int D>
+bool is_placed_at_random(const BodySettings<D>& s) {
+  return s.positions.empty();
+}
+
+// Volume of the balls of all bodies at random places, those of a radius above `largest` as if they had that.
+template <int D>
+double random_volume(const std::vector<BodySettings<D>>& settings, double largest) {
+  double volume = 0.0;
+  for (const BodySettings<D>& s : settings)
+    if (is_placed_at_random(s))
+      volume += static_cast<double>(s.count) * unit_ball_volume<D> *
+                std::pow(std::clamp(reach_of(s), 0.0, largest), D);
+  return volume;
+}
+
+// Why there are no random places for all; `found` is empty where they were not even sought.
+template <int D>
+ConfigError no_room(const std::vector<BodySettings<D>>& settings, double space,
+                    const std::optional<RandomPlaces<D>>& found) {
+  constexpr const char* remedy = "lower count or clearance, give positions, or use a larger box";
+  std::vector<std::string> names;
+  std::int64_t bodies = 0;
+  for (const BodySettings<D>& s : settings) {
+    if (!is_placed_at_random(s)) continue;
+    names.push_back(fmt::format("'{}'", s.name));
+    bodies += s.count;
+    if (found && found->scale == 0.0 && index(bodies) > found->centres.size())
+      return ConfigError(fmt::format(
+          "[[body]] '{}': no room was found even for one body alone, which with half its clearance "
+          "around it is {:.6g} across: {}",
+          s.name, 2.0 * reach_of(s), remedy));
   }
+  constexpr double any = std::numeric_limits<double>::infinity();
+  const double fraction = random_volume(settings, any) / space;
+  std::string reached = "more than there is";
+  if (found) {
+    const double share = std::pow(found->scale, D);
+    reached = fmt::format("and {:.3g} was reached, which is about {} of them", share * fraction,
+                          static_cast<std::int64_t>(share * static_cast<double>(bodies)));
+  }
+  return ConfigError(fmt::format(
+      "[[body]] {}: no random places were found for all {} bodies. With half its clearance around "
+      "each they would fill {:.3g} of the {}, {}: {}",
+      fmt::join(names, ", "), bodies, fraction, D > 2 ? "volume" : "area", reached, remedy));
+}
 
-  RigidPose<D> random_pose(const BodySettings<D>& s, std::uint64_t number) const {
-    constexpr std::uint64_t most_attempts = 10000;
-    const double reach = s.radius() + 0.5 * s.clearance;
-    for (std::uint64_t attempt = 0; attempt < most_attempts; ++attempt) {
-      const auto u = random.uniforms(attempt, 0, number, 0);
-      RigidPose<D> pose;
-      for (int c = 0; c < D; ++c) pose.centre[c] = low[c] + (high[c] - low[c]) * u[index(c)];
-      if (!fits(pose.centre, reach)) continue;
-      turn_at_random(random.uniforms(attempt, 1, number, 0), pose.orientation);
-      return pose;
+template <int D>
+RandomPlaces<D> places_of_bodies(const std::vector<BodySettings<D>>& settings, const Box<D>& box,
+                                 const Vec<D>& low, const Vec<D>& high, std::uint64_t seed) {
+  const double space = Box<D>{high - low, {}}.volume();
+  // Balls wider than the box overlap with their own images.
+  const double widest = 0.5 * *std::min_element(box.size.x.begin(), box.size.x.end());
+  if (random_volume(settings, widest) > space) throw no_room<D>(settings, space, {});
+  BallCells<D> there(box);
+  std::vector<double> reaches;
+  for (const BodySettings<D>& s : settings) {
+    for (Vec<D> centre : s.positions) {
+      box.wrap(centre);
+      there.add(centre, reach_of(s));
     }
-    throw ConfigError(fmt::format(
-        "[[body]] '{}': no room was found for body {} of {}: lower its count or clearance, give "
-        "positions, or use a larger box",
-        s.name, taken.size() + 1, s.bodies()));
+    if (is_placed_at_random(s)) reaches.insert(reaches.end(), index(s.count), reach_of(s));
   }
-};
+  RandomPlaces<D> found = find_random_places<D>(box, low, high, there, reaches, seed);
+  if (found.scale < 1.0) throw no_room<D>(settings, space, found);
+  return found;
+}
 
 }  // namespace
 
@@ -78,26 +117,23 @@ template <int D>
 std::vector<std::size_t> place_bodies(const std::vector<BodySettings<D>>& settings,
                                       const Box<D>& box, const Vec<D>& low, const Vec<D>& high,
                                       std::uint64_t seed, bool at_random, Particles<D>& particles) {
-  Placer<D> placer{box, low, high, CounterRandom(seed, Stream::body_poses), {}};
-  // Given places come first, so that random ones keep clear of them.
+  RandomPlaces<D> found;
+  if (at_random) found = places_of_bodies(settings, box, low, high, seed);
+  const CounterRandom random(seed, Stream::body_poses);
+  std::size_t number = 0;  // of a body at a random place
   std::vector<std::vector<RigidPose<D>>> poses(settings.size());
   for (std::size_t k = 0; k < settings.size(); ++k)
-    for (const Vec<D>& centre : settings[k].positions) {
-      RigidPose<D> pose;
-      pose.centre = centre;
-      box.wrap(pose.centre);
-      poses[k].push_back(pose);
-      placer.taken.push_back({pose.centre, settings[k].radius() + 0.5 * settings[k].clearance});
-    }
-  std::uint64_t number = 0;
-  for (std::size_t k = 0; k < settings.size(); ++k)
-    for (std::int64_t n = 0; settings[k].positions.empty() && n < settings[k].count; ++n) {
-      RigidPose<D> pose;
+    for (std::size_t n = 0; n < index(settings[k].bodies()); ++n) {
+      RigidPose<D>& pose = poses[k].emplace_back();
       pose.centre = low;
-      if (at_random) pose = placer.random_pose(settings[k], number++);
-      poses[k].push_back(pose);
-      placer.taken.push_back(
-          {poses[k].back().centre, settings[k].radius() + 0.5 * settings[k].clearance});
+      if (!is_placed_at_random(settings[k])) {
+        pose.centre = settings[k].positions[n];
+        box.wrap(pose.centre);
+      } else if (at_random) {
+        pose.centre = found.centres[number];
+        turn_at_random(random.uniforms(found.attempts[number], 1, number, 0), pose.orientation);
+        ++number;
+      }
     }
   std::vector<std::size_t> kind;
   for (const bool known : {false, true})

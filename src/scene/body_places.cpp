@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "odpd/core/error.h"
+#include "odpd/geometry/ball_cells.h"
 
 namespace odpd {
 
@@ -28,12 +30,20 @@ struct PlacedBody {
 
 // Largest distance of a constituent from the nearest other one.
 template <int D>
-double spacing_of(const std::vector<Vec<D>>& arms) {
+double spacing_of(std::vector<Vec<D>> points) {
+  std::sort(points.begin(), points.end(),
+            [](const Vec<D>& a, const Vec<D>& b) { return a[0] < b[0]; });
   double most = 0.0;
-  for (std::size_t i = 0; i < arms.size(); ++i) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
     double nearest = infinity;
-    for (std::size_t j = 0; j < arms.size(); ++j)
-      if (j != i) nearest = std::min(nearest, norm(arms[i] - arms[j]));
+    // Those further along x can only be further away.
+    const auto is_nearer = [&](std::size_t j) {
+      if (std::abs(points[i][0] - points[j][0]) > nearest) return false;
+      nearest = std::min(nearest, norm(points[i] - points[j]));
+      return true;
+    };
+    for (std::size_t j = i + 1; j < points.size() && is_nearer(j);) ++j;
+    for (std::size_t j = i; j > 0 && is_nearer(j - 1);) --j;
     if (nearest < infinity) most = std::max(most, nearest);
   }
   return most;
@@ -50,9 +60,13 @@ bool reaches_into(const Box<D>& box, const PlacedBody<D>& a, const PlacedBody<D>
 template <int D>
 bool are_near(const Box<D>& box, const PlacedBody<D>& a, const PlacedBody<D>& b) {
   const double near = std::max(a.spacing, b.spacing);
-  for (std::size_t k = 0; k < a.arms.size(); ++k)
-    for (std::size_t l = 0; l < b.arms.size(); ++l)
-      if (norm(box.separation(a.at(k), b.at(l))) <= near) return true;
+  BallCells<D> sites(box);
+  for (std::size_t k = 0; k < a.arms.size(); ++k) sites.add(a.at(k), 0.0);
+  for (std::size_t l = 0; l < b.arms.size(); ++l)
+    if (sites.find_near(b.at(l), near, [&](std::size_t k) {
+          return norm(box.separation(a.at(k), b.at(l))) <= near;
+        }))
+      return true;
   return false;
 }
 
@@ -66,6 +80,34 @@ bool lie_in_each_other(const Box<D>& box, const PlacedBody<D>& a, const PlacedBo
   const bool deep = share == 1.0 && (reaches_into(box, a, b) || reaches_into(box, b, a));
   return (central || deep) && are_near(box, a, b);
 }
+
+// Bodies so far, to be asked for the first of them that a further one lies in.
+template <int D>
+class PlacedBodies {
+ public:
+  explicit PlacedBodies(const Box<D>& box) : box_(box), balls_(box) {}
+
+  void add(const PlacedBody<D>& body) {
+    balls_.add(body.centre, body.radius);
+    bodies_.push_back(body);
+  }
+  const PlacedBody<D>* first_in(const PlacedBody<D>& body, double share) const {
+    std::vector<std::size_t> near;
+    balls_.find_near(body.centre, body.radius, [&](std::size_t k) {
+      near.push_back(k);
+      return false;
+    });
+    std::sort(near.begin(), near.end());
+    for (const std::size_t k : near)
+      if (lie_in_each_other(box_, body, bodies_[k], share)) return &bodies_[k];
+    return nullptr;
+  }
+
+ private:
+  const Box<D>& box_;
+  BallCells<D> balls_;
+  std::vector<PlacedBody<D>> bodies_;
+};
 
 // How deep behind a surface its constituents are at least and at most; of all walls where that is most.
 template <int D>
@@ -146,7 +188,7 @@ void check_walls(const Config& entry, const SceneSettings<D>& scene, const Place
 template <int D>
 void check_body_positions(const Config& config, const SceneSettings<D>& scene) {
   const std::vector<Config> entries = config.tables("body");
-  std::vector<PlacedBody<D>> placed;
+  PlacedBodies<D> placed(scene.box);
   for (std::size_t kind = 0; kind < scene.bodies.size(); ++kind) {
     const BodySettings<D>& s = scene.bodies[kind];
     const double spacing = s.positions.empty() ? 0.0 : spacing_of<D>(s.shape);
@@ -155,14 +197,13 @@ void check_body_positions(const Config& config, const SceneSettings<D>& scene) {
           kind, static_cast<std::int64_t>(n) + 1, s.positions[n], s.shape, s.radius(), spacing};
       check_ends(entries[kind], scene, body);
       check_walls(entries[kind], scene, body);
-      for (const PlacedBody<D>& other : placed)
-        if (lie_in_each_other(scene.box, body, other, 1.0))
-          entries[kind].fail(
-              "positions",
-              fmt::format("{} and {} lie in each other: put them further apart, or make one "
-                          "shape = \"points\" of what belongs together",
-                          name_of(scene, other), name_of(scene, body)));
-      placed.push_back(body);
+      if (const PlacedBody<D>* other = placed.first_in(body, 1.0))
+        entries[kind].fail(
+            "positions",
+            fmt::format("{} and {} lie in each other: put them further apart, or make one "
+                        "shape = \"points\" of what belongs together",
+                        name_of(scene, *other), name_of(scene, body)));
+      placed.add(body);
     }
   }
 }
@@ -171,16 +212,17 @@ template <int D>
 void check_start_bodies(const SceneSettings<D>& scene, const std::vector<std::size_t>& kind,
                         const Particles<D>& particles) {
   constexpr double same_place = 1e-3;
-  std::vector<PlacedBody<D>> placed;
+  PlacedBodies<D> placed(scene.box);
   std::vector<std::int64_t> count(scene.bodies.size(), 0);
+  std::vector<double> radius, spacing;  // of each [[body]]
+  for (const BodySettings<D>& s : scene.bodies) {
+    radius.push_back(s.radius());
+    spacing.push_back(spacing_of<D>(s.shape));
+  }
   for (std::size_t b = 0; b < particles.bodies.size(); ++b) {
     const RigidBody<D>& body = particles.bodies[b];
-    PlacedBody<D> here{kind[b],
-                       ++count[kind[b]],
-                       body.pose.centre,
-                       {},
-                       scene.bodies[kind[b]].radius(),
-                       spacing_of<D>(body.frame)};
+    PlacedBody<D> here{kind[b], ++count[kind[b]], body.pose.centre,
+                       {},      radius[kind[b]],  spacing[kind[b]]};
     for (const Vec<D>& point : body.frame) here.arms.push_back(body.pose.orientation.turn(point));
     const Depth<D> depth = depth_in_walls(scene, here, true);
     if (depth.wall != nullptr && depth.least > rounding(scene, depth.wall->axis))
@@ -188,12 +230,11 @@ void check_start_bodies(const SceneSettings<D>& scene, const std::vector<std::si
           fmt::format("{}: {} lies in the wall at {}, {:.6g} behind its surface: move "
                       "it, or give the wall another thickness",
                       scene.start_file, name_of(scene, here), side_of(*depth.wall), depth.least));
-    for (const PlacedBody<D>& other : placed)
-      if (lie_in_each_other(scene.box, here, other, same_place))
-        throw ConfigError(fmt::format("{}: {} and {} are at one place: move one of them",
-                                      scene.start_file, name_of(scene, other),
-                                      name_of(scene, here)));
-    placed.push_back(std::move(here));
+    if (const PlacedBody<D>* other = placed.first_in(here, same_place))
+      throw ConfigError(fmt::format("{}: {} and {} are at one place: move one of them",
+                                    scene.start_file, name_of(scene, *other),
+                                    name_of(scene, here)));
+    placed.add(here);
   }
 }
 

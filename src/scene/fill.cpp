@@ -14,13 +14,14 @@
 namespace odpd {
 
 template <int D>
-bool inside_a_body(const Box<D>& box, const Particles<D>& particles, const Vec<D>& r) {
-  return std::any_of(particles.bodies.begin(), particles.bodies.end(),
-                     [&](const RigidBody<D>& body) {
-                       const double distance = norm(box.separation(r, body.pose.centre));
-                       return std::any_of(body.frame.begin(), body.frame.end(),
-                                          [&](const Vec<D>& b) { return norm(b) > distance; });
-                     });
+BallCells<D> balls_of_bodies(const Box<D>& box, const Particles<D>& particles) {
+  BallCells<D> balls(box);
+  for (const RigidBody<D>& body : particles.bodies) {
+    double radius = 0.0;
+    for (const Vec<D>& b : body.frame) radius = std::max(radius, norm(b));
+    balls.add(body.pose.centre, radius);
+  }
+  return balls;
 }
 
 namespace {
@@ -72,13 +73,14 @@ std::vector<Vec<D>> random_points(std::uint64_t seed, const Box<D>& box, const V
                                   const Particles<D>& particles) {
   constexpr std::uint64_t most_attempts = 1000;
   const CounterRandom random(seed, Stream::start_positions);
+  const BallCells<D> bodies = balls_of_bodies(box, particles);
   std::vector<Vec<D>> points(index(count));
   for (std::int64_t k = 0; k < count; ++k) {
     Vec<D>& point = points[index(k)];
     for (std::uint64_t attempt = 0; attempt < most_attempts; ++attempt) {
       const auto u = random.uniforms(0, attempt, static_cast<std::uint64_t>(k), 0);
       for (int c = 0; c < D; ++c) point[c] = low[c] + (high[c] - low[c]) * u[index(c)];
-      if (!inside_a_body(box, particles, point)) break;
+      if (!bodies.overlaps(point, 0.0)) break;
       if (attempt + 1 == most_attempts)
         throw ConfigError(
             "no room was found for the fluid: the bodies fill the space between the walls");
@@ -311,8 +313,8 @@ void draw_velocities(std::uint64_t seed, double kT, double mass, bool conserved,
 
 template void draw_velocities<2>(std::uint64_t, double, double, bool, Particles<2>&);
 template void draw_velocities<3>(std::uint64_t, double, double, bool, Particles<3>&);
-template bool inside_a_body<2>(const Box<2>&, const Particles<2>&, const Vec<2>&);
-template bool inside_a_body<3>(const Box<3>&, const Particles<3>&, const Vec<3>&);
+template BallCells<2> balls_of_bodies<2>(const Box<2>&, const Particles<2>&);
+template BallCells<3> balls_of_bodies<3>(const Box<3>&, const Particles<3>&);
 template void place_walls<2>(const SceneSettings<2>&, Particles<2>&);
 template void place_walls<3>(const SceneSettings<3>&, Particles<3>&);
 template void place_fluid<2>(const SceneSettings<2>&, const Vec<2>&, const Vec<2>&, Particles<2>&);

@@ -27,7 +27,7 @@ class Room {
         low_(low),
         high_(high),
         random_(seed, Stream::molecules),
-        particles_(particles) {}
+        bodies_(balls_of_bodies(box, particles)) {}
 
   /// Unwrapped positions of the beads of molecule `number`; none where there is no room.
   std::vector<Vec<D>> beads(const MoleculeSettings<D>& m, std::uint64_t number) const {
@@ -44,7 +44,7 @@ class Room {
     for (int c = 0; c < D; ++c)
       if (!box_.is_periodic(c) && !(r[c] >= low_[c] && r[c] <= high_[c])) return false;
     box_.wrap(r);
-    return !inside_a_body(box_, particles_, r);
+    return !bodies_.overlaps(r, 0.0);
   }
 
   Vec<D> centre(std::uint64_t attempt, std::uint64_t number) const {
@@ -88,7 +88,7 @@ class Room {
   const Box<D>& box_;
   Vec<D> low_, high_;
   CounterRandom random_;
-  const Particles<D>& particles_;
+  const BallCells<D> bodies_;
 };
 
 }  // namespace

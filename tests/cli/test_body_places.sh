@@ -34,6 +34,44 @@ expect_exit 0 run --set run.duration=0.02 --out at_wall
 disks '{ at = [1.0, 1.0] }'
 expect_exit 0 run --set run.duration=0.02 --set body.0.motion=fixed --out bump
 
+# --- random places ---
+# crowd COUNT: so many disks of radius 0.5, each with a clearance of 0.2, in a periodic box of 20 x 20; a fluid beside them.
+crowd() {
+  mkdir -p crowd
+  cat >crowd/case.toml <<CASE
+dimension = 2
+[box]
+size = [20.0, 20.0]
+periodic = [true, true]
+[fluid]
+count = 800
+a = 18.75
+gamma = 4.5
+kT = 1.0
+[[body]]
+name = "disk"
+shape = "disk"
+radius = 0.5
+count = $1
+clearance = 0.2
+[integrator]
+name = "trapezoidal"
+dt = 0.01
+[run]
+duration = 0.02
+CASE
+}
+# .6 of the area, more than one after the other finds: the same places each time.
+crowd 212
+expect_exit 0 "$odpd" run crowd --threads 1 --out crowd-1
+expect_exit 0 "$odpd" run crowd --threads 2 --out crowd-2
+have_python && expect "$python" "$source_root/tests/cli/same_run.py" crowd-1 crowd-2
+# .95 and more than all there is.
+crowd 336
+expect_error 1 "$odpd" run crowd -- "[[body]] 'disk'" 'all 336 bodies' '0.95 of the area' 'and 0.8' 'was reached' 'about 2' 'lower count or clearance'
+crowd 1000
+expect_error 1 "$odpd" run crowd -- "[[body]] 'disk'" '2.83 of the area, more than there is' 'larger box'
+
 # --- the poses of a start file ---
 disks '{ at = [1.0, 2.5] }, { at = [2.5, 2.5] }'
 expect_exit 0 run --set run.duration=0.02 --out before

@@ -41,6 +41,15 @@ TEST(BodyPlaces, TwoMayTouchButNotLieInEachOther) {
   refuse(disks("{at=[0.1, 3.0]}, {at=[9.9, 3.0]}"), {"lie in each other"});
 }
 
+TEST(BodyPlaces, TheFirstOfSeveralIsNamed) {
+  // The last lies in the second and the third.
+  refuse(disks("{at=[8.0, 3.0]}, {at=[3.4, 3.0]}, {at=[3.0, 3.0]}"), {"body 2", "body 3"});
+  refuse(disks("{at=[8.0, 3.0]}, {at=[3.0, 3.0]}, {at=[4.0, 3.0]}, {at=[3.5, 3.0]}"),
+         {"body 2 of [[body]] 'disk' at (3, 3) and body 4 of [[body]] 'disk' at (3.5, 3)"});
+  refuse(disks("{at=[8.0, 3.0]}, {at=[4.0, 3.0]}, {at=[3.0, 3.0]}, {at=[3.5, 3.0]}"),
+         {"body 2 of [[body]] 'disk' at (4, 3) and body 4 of [[body]] 'disk' at (3.5, 3)"});
+}
+
 TEST(BodyPlaces, TwoEntriesAndObstaclesToo) {
   const std::string square =
       "[[body]]\nname = \"post\"\nshape = \"square\"\nside = 1.0\nper_side = 4\nmotion = "

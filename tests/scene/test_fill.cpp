@@ -50,6 +50,22 @@ std::int64_t count_group(const Scene<D>& scene, Group group) {
   return std::count(groups.begin(), groups.end(), group);
 }
 
+TEST(Fill, RandomFluidStaysOutOfBodies) {
+  const Scene<2> scene(settings<2>(std::string(channel) +
+                                   "[[body]]\nshape = \"ring\"\nradius = 1.5\npoints_on_ring = "
+                                   "9\npositions = [{ at = [0.5, 4.0] }, { at = [6.0, 8.0] }]\n"
+                                   "[start]\nrelax_sweeps = 0\n"));
+  const auto& p = scene.particles();
+  double closest = 1e300;
+  for (std::size_t i = 0; i < p.position.size(); ++i)
+    for (const auto& body : p.bodies)
+      if (p.is_free(i))
+        closest = std::min(closest, norm(scene.box().separation(p.position[i], body.pose.centre)));
+  EXPECT_EQ(count_group(scene, Group()), 400);
+  EXPECT_GE(closest, 1.5);
+  EXPECT_LT(closest, 1.6);
+}
+
 TEST(Fill, AChannelHasItsWallsAndItsFluid) {
   const Scene<2> scene(settings<2>(channel));
   EXPECT_EQ(count_group(scene, Group()), 400);

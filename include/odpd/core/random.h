@@ -30,7 +30,9 @@ enum class Stream : std::uint64_t {
   /// Trial moves (sweep, 0, id, 0): D displacements, acceptance. Of bodies (sweep, 1, body, 0), their turns
   /// (sweep, 2, body, 0).
   monte_carlo = 8,
-  body_poses = 9,  ///< positions and orientations of bodies (attempt, 0 or 1, body, 0)
+  /// Positions and orientations of bodies (attempt, 0 or 1, body, 0), and where they go when dense ones are mixed
+  /// (sweep, 2, body, 0).
+  body_poses = 9,
   /// Positions of molecules (attempt, 0, molecule, 0), turns (attempt, 1, molecule, 0), steps of a walk
   /// (attempt, 2 + trial, molecule, bead).
   molecules = 12,
