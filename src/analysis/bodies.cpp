@@ -250,8 +250,11 @@ void Bodies<D>::add_diffusion(const std::string& name, std::size_t kind, Results
   results.scalars.push_back({name + ".diffusion", places_.diffusion().mean(kind),
                              places_.diffusion().standard_error(kind)});
   if (scene_.box().shear) return;  // the flow turns them, which is no diffusion
-  results.scalars.push_back({name + ".rotational_diffusion", turns_.diffusion().mean(kind),
-                             turns_.diffusion().standard_error(kind)});
+  // A rod turns about fewer axes than those that were counted.
+  const double axes = rotations<D>(scene_.settings().bodies[kind].shape),
+               share = rotation_components<D> / axes;
+  results.scalars.push_back({name + ".rotational_diffusion", share * turns_.diffusion().mean(kind),
+                             share * turns_.diffusion().standard_error(kind)});
 }
 
 template <int D>

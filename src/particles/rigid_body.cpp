@@ -64,12 +64,12 @@ double moment_across(const Rows<3>& inertia) {
 
 // No moment exceeds the sum of the other two, so where the least one is small the others are about alike, and the product of
 // all three tells how small. Unlike the pivots of an elimination it keeps its precision whichever way the line points.
-int rotations_of(const Rows<2>& inertia) { return moment_across(inertia) > 0.0 ? 1 : 0; }
-int rotations_of(const Rows<3>& inertia) {
+int rotations_of(const Rows<2>& inertia, double) { return moment_across(inertia) > 0.0 ? 1 : 0; }
+int rotations_of(const Rows<3>& inertia, double least) {
   const double across = moment_across(inertia);
   if (!(across > 0.0)) return 0;
   const double product = dot(inertia[0], swing(inertia[1], inertia[2]));
-  return product > least_moment * across * across * across ? 3 : 2;
+  return product > least * across * across * across ? 3 : 2;
 }
 
 }  // namespace
@@ -80,15 +80,15 @@ std::array<Vec<D>, index(D)> moment_of_inertia(std::span<const Vec<D>> arms) {
 }
 
 template <int D>
-int rotations(std::span<const Vec<D>> arms) {
-  return rotations_of(moment_of_inertia<D>(arms));
+int rotations(std::span<const Vec<D>> arms, double least) {
+  return rotations_of(moment_of_inertia<D>(arms), least);
 }
 
 template <int D>
 Vec<D> angular_velocity(std::span<const Vec<D>> arms, const Vec<D>& l) {
   const Rows<D> inertia = moment_of_inertia<D>(arms);
   const double across = moment_across(inertia);
-  const int turns = rotations_of(inertia);
+  const int turns = rotations_of(inertia, least_moment);
   if (turns == 0)
     throw ConfigError(
         "a rigid body has its constituents in one point: it has no moment of inertia");
@@ -127,7 +127,7 @@ RigidMotion<D> rigid_motion(std::span<const Vec<D>> arms, std::span<const Vec<D>
 #define ODPD_INSTANTIATE(D)                                                                      \
   template void find_arms<D>(const Box<D>&, std::span<const Vec<D>>, std::span<Vec<D>>);         \
   template std::array<Vec<D>, index(D)> moment_of_inertia<D>(std::span<const Vec<D>>);           \
-  template int rotations<D>(std::span<const Vec<D>>);                                            \
+  template int rotations<D>(std::span<const Vec<D>>, double);                                    \
   template Vec<D> angular_velocity<D>(std::span<const Vec<D>>, const Vec<D>&);                   \
   template std::optional<Vec<D>> turn_under<D>(std::span<const Vec<D>>, std::span<const Vec<D>>, \
                                                const Vec<D>&);                                   \

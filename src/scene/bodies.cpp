@@ -179,7 +179,7 @@ void move_bodies(const std::vector<std::vector<Vec<D>>>& constituents, const Box
       }
       return off <= 1e-5 * size;
     };
-    // A fixed one, which may be a line without an orientation to be found, has that of the case.
+    // A line has no orientation about itself to be found: where it fits, that of the case.
     if (!fits(pose)) pose.orientation = best_rotation(body.frame, arms);
     if (!fits(pose)) fail(fmt::format("body {} has another shape than in the case", b));
     body.pose = pose;

@@ -149,6 +149,21 @@ void read_places(const Config& entry, const Box<D>& box, BodySettings<D>& body) 
                              2.0 * body.radius(), "xyz"[c]));
 }
 
+// A body that moves needs some extent. One that is no line but almost would turn about it at once, however small dt is.
+template <int D>
+void check_turns(const Config& entry, const Box<D>& box, const BodySettings<D>& body) {
+  constexpr double thin = 1e-3;
+  const double edge = *std::max_element(box.size.x.begin(), box.size.x.end());
+  // Of a smaller one rounding of positions in the box would tell the orientation.
+  if (!(body.radius() > 1e-9 * edge))
+    entry.fail("shape", "a body that turns needs two points not in one place");
+  if (rotations<D>(body.shape) > rotations<D>(body.shape, thin * thin))
+    entry.fail("shape", fmt::format("its points lie almost on a line, within {} of their extent: "
+                                    "put them on it to a millionth of that (more digits), or "
+                                    "farther from it",
+                                    thin));
+}
+
 }  // namespace
 
 template <int D>
@@ -175,9 +190,7 @@ BodySettings<D> read_body(const Config& entry, const Box<D>& box) {
     body.load.force = optional_body_vector<D>(entry, "force");
     body.load.torque = turning_vector<D>(entry, "torque");
   }
-  if (body.motion != BodyMotion::fixed && rotations<D>(body.shape) < rotation_components<D>)
-    entry.fail("shape", fmt::format("a body that turns needs {} points not {}",
-                                    D > 2 ? "three" : "two", D > 2 ? "on a line" : "in one place"));
+  if (body.motion != BodyMotion::fixed) check_turns(entry, box, body);
   read_places(entry, box, body);
   return body;
 }

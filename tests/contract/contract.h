@@ -17,11 +17,12 @@
 #include "odpd/pairs/noise.h"
 #include "odpd/scene/scene.h"
 #include "support/network.h"
+#include "support/simplex.h"
 
 namespace contract {
 
 enum class Model { central, transverse, far_friction };
-enum class Geometry { walls, periodic, open, obstacles, suspension, sheared };
+enum class Geometry { walls, periodic, open, obstacles, suspension, rods, sheared };
 
 inline std::string name(Model model) {
   return model == Model::central ? "central" : model == Model::transverse ? "transverse" : "far";
@@ -32,15 +33,17 @@ inline std::string name(Geometry geometry) {
          : geometry == Geometry::open      ? "open"
          : geometry == Geometry::obstacles ? "obstacles"
          : geometry == Geometry::sheared   ? "sheared"
+         : geometry == Geometry::rods      ? "rods"
                                            : "suspension";
 }
 
-/// Two rigid bodies, one of them pushed and turned; with walls also a fixed and a moving obstacle, and under shear the first
+/// Two rigid bodies, rods or others, one of them pushed and turned; with walls also a fixed and a moving obstacle, and under shear the first
 /// one lies across the sliding faces.
 template <int D>
-void add_bodies(odpd::SceneSettings<D>& s, bool walls) {
+void add_bodies(odpd::SceneSettings<D>& s, bool walls, bool rods) {
   odpd::BodySettings<D> body;
-  for (int c = 0; c < D; ++c)
+  if (rods) body.shape = support::rod_body<D>().frame;
+  for (int c = 0; c < D && !rods; ++c)
     for (const double side : {-0.3, 0.35}) {
       odpd::Vec<D> point = support::uniform_vec<D>(0.05 * c);
       point[c] += side;
@@ -94,8 +97,8 @@ odpd::SceneSettings<D> settings(Model model, Geometry geometry, double length) {
     s.box = s.box.at(0.0);
   }
   if (geometry == Geometry::obstacles || geometry == Geometry::suspension ||
-      geometry == Geometry::sheared)
-    add_bodies(s, geometry == Geometry::obstacles);
+      geometry == Geometry::rods || geometry == Geometry::sheared)
+    add_bodies(s, geometry == Geometry::obstacles, geometry == Geometry::rods);
   if (geometry != Geometry::walls && geometry != Geometry::obstacles) return s;
   s.box.size[D - 1] += 2.0;
   s.box.periodic[D - 1] = false;

@@ -1,5 +1,5 @@
 #pragma once
-// A fluid with two rigid bodies in it, in a periodic box.
+// A fluid with two rigid bodies of one shape in it, in a periodic box.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -17,12 +17,12 @@ using namespace odpd;  // of the library under test
 template <int D>
 struct Swarm {
   // Fluid on a lattice 0.7 apart with two bodies in it, in a periodic box.
-  Swarm(const DpdParameters& fluid, double mass, int side, double tolerance = 1e-12)
+  Swarm(const DpdParameters& fluid, double mass, int side, double tolerance = 1e-12,
+        RigidBody<D> body = support::simplex_body<D>())
       : model(1, {fluid}), nothing({.mass = mass, .kT = fluid.kT}) {
     box.size = support::uniform_vec<D>(0.7 * side);
     box.periodic.fill(true);
     for (const double where : {0.25, 0.7}) {
-      RigidBody<D> body = support::simplex_body<D>();
       body.pose.centre = where * box.size;
       particles.add_body(body, box, 0);
     }

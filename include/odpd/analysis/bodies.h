@@ -4,8 +4,9 @@
 //   force, torque     of the edges (conservative, friction and random), stage means; about the body's centre
 //   velocity, angular_velocity   of the motion over the step; under [shear] without held bodies less that of the flow at the
 //                     centre
-//   diffusion, rotational_diffusion   from mean-square displacements of centre and orientation (free bodies; the latter not
-//                     under [shear], where they turn with the flow)
+//   diffusion, rotational_diffusion   from mean-square displacements of centre and orientation, the latter about each axis
+//                     that a body turns about: three in 3D, two of a rod (free bodies; not under [shear], where they turn with
+//                     the flow)
 //   g(q)              density of the fluid at distance q from the centre, relative to its mean (Phan-Thien et al. 2016,
 //                     eq. 48), and the exclusion radius: of the largest ball with less than `empty` of the mean density
 //

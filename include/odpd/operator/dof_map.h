@@ -5,9 +5,9 @@
 //
 //   v_k = V + X(a_k) w,   X(a) w = w x a,   a_k the arm of constituent k
 //
-// *Nodes* are the groups of D unknowns that solvers see: w of each body (in 2D with one unused component), then the free
-// particles in memory order, then V of each body. A translation moves all but the first of these. *Mobile* are the particles
-// that move: free ones and constituents, in memory order.
+// *Nodes* are the groups of D unknowns that solvers see: w of each body (in 2D with one unused component, of a rod in 3D
+// with one that moves nothing, along its line), then the free particles in memory order, then V of each body. A translation
+// moves all but the first of these. *Mobile* are the particles that move: free ones and constituents, in memory order.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -59,7 +59,7 @@ class DofMap {
   /// P q + known, with `known` read at the particles without unknowns.
   void scatter(std::span<const Vec<D>> arms, std::span<const double> q,
                std::span<const Vec<D>> known, std::vector<Vec<D>>& velocity) const;
-  /// (P^T P)^-1 l: unknowns from momenta per mass, those of bodies linear and angular.
+  /// (P^T P)^+ l: unknowns from momenta per mass, those of bodies linear and angular; no spin of a rod about its line.
   void divide_by_inertia(std::span<const Vec<D>> arms, std::vector<double>& l) const;
 
  private:

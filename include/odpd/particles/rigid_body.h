@@ -76,10 +76,10 @@ constexpr double least_moment = 1e-12;
 /// I, sum_k X(a_k)^T X(a_k) (length^2), symmetric; in 2D one number, at [0][0].
 template <int D>
 std::array<Vec<D>, index(D)> moment_of_inertia(std::span<const Vec<D>> arms);
-/// Axes about which constituents at these arms have a moment of inertia: all (1 in 2D, 3 in 3D), 2 on a line in 3D, 0 in one
-/// point.
+/// Axes about which constituents at these arms have a moment of inertia, of `least` or more of the largest one: all (1 in 2D,
+/// 3 in 3D), 2 on a line in 3D, 0 in one point.
 template <int D>
-int rotations(std::span<const Vec<D>> arms);
+int rotations(std::span<const Vec<D>> arms, double least = least_moment);
 
 /// The rigid motion closest to given velocities of points at these arms, least squares, and of such the smallest; for velocities
 /// that are rigid, that motion, where it has no spin about a line. Also the motion of momentum sum v and angular momentum
