@@ -174,13 +174,19 @@ inline double true_residual(const odpd::System& system, std::vector<double> b,
 
 // Random vectors orthonormal in the inner product of A: the noise along them, in units of sqrt(2 kT/dt), must be independent
 // standard normal numbers.
-inline std::vector<std::vector<double>> probes(const odpd::System& system, std::size_t count,
-                                               std::size_t unused) {
+// `sites`: of bodies, whose turns that move nobody have no noise.
+template <int D>
+std::vector<std::vector<double>> probes(const odpd::System& system, std::size_t count,
+                                        const odpd::RigidSites<D>& sites) {
   std::vector<std::vector<double>> found;
   for (std::size_t k = 0; k < count; ++k) {
     std::vector<double> a =
         support::random_numbers(static_cast<std::size_t>(system.size()), 100 + k);
-    for (std::size_t n = 0; n < unused; ++n) a[2 * n + 1] = 0.0;
+    for (std::size_t b = 0; b < static_cast<std::size_t>(sites.bodies()); ++b) {
+      const auto& unused = sites.unused(b);
+      const std::vector<double> w(&a[b * D], &a[(b + 1) * D]);
+      for (std::size_t k = 0; k < D * D; ++k) a[b * D + k / D] -= unused[k] * w[k % D];
+    }
     for (const auto& b : found) {
       const double overlap = support::dot(a, product(system, b));
       for (std::size_t n = 0; n < a.size(); ++n) a[n] -= overlap * b[n];
@@ -200,8 +206,7 @@ void expect_noise_covariance(const Instant<D>& instant, const odpd::System& syst
   constexpr std::size_t n = 1250, K = 16;
   constexpr double dt = 0.013, kT = 0.7;
   const odpd::DofMap<D> dofs(instant.scene.particles());
-  // In 2D the second component of an angular velocity means nothing.
-  const auto a = probes(system, K, D == 2 ? static_cast<std::size_t>(dofs.bodies()) : 0);
+  const auto a = probes(system, K, instant.rigid().sites());
   std::array<std::array<double, K>, K> mean{};
   std::vector<odpd::Vec<D>> on_edges;
   std::vector<double> xi;
