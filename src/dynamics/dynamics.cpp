@@ -138,15 +138,9 @@ auto Dynamics<D>::force(const Stage<D>& stage) -> Unknowns {
   });
   if (motion_.dofs().mobile() < motion_.dofs().particles()) {
     std::vector<std::int32_t> known;
-    std::vector<Vec<D>> velocity = stage.velocity;
-    for (std::size_t i = 0; i < velocity.size(); ++i) {
-      if (particles_.is_known(i)) {
-        known.push_back(static_cast<std::int32_t>(i));
-      } else {
-        velocity[i] = Vec<D>{};
-      }
-    }
-    add_known_friction<D>(stage.network, known, velocity, force);
+    for (std::size_t i = 0; i < force.size(); ++i)
+      if (particles_.is_known(i)) known.push_back(static_cast<std::int32_t>(i));
+    add_known_friction<D>(stage.network, known, stage.velocity, force);
   }
   add_sliding_friction(stage.network, force);
   Unknowns f;

@@ -107,11 +107,7 @@ std::vector<Vec<D>> Motion<D>::displaced(const std::vector<Vec<D>>& velocity, do
     }
   });
   crossings += own.ranks->sum(std::accumulate(caught.begin(), caught.end(), std::int64_t{0}));
-  const Box<D> box = box_.at(t + dt);
-  for (std::size_t b = 0; b < particles_.bodies.size(); ++b) {
-    RigidPose<D> pose = particles_.bodies[b].pose;
-    if (advance(b, velocity, dt, box, pose)) place(b, pose, box, r, nullptr);
-  }
+  if (!particles_.bodies.empty()) displace_bodies(velocity, dt, box_.at(t + dt), r);
   return r;
 }
 
@@ -121,9 +117,6 @@ std::int64_t Motion<D>::move(const std::vector<Vec<D>>& velocity, double dt, dou
   const Share own = particles_.owned();
   const Box<D> box = moved_in_ = box_.at(t + dt);
   const std::vector<std::int32_t> images_before = moving_images();
-  std::vector<std::size_t> moved;
-  for (std::size_t b = 0; b < particles_.bodies.size(); ++b)
-    if (advance(b, velocity, dt, box, particles_.bodies[b].pose)) moved.push_back(b);
   const auto n = static_cast<std::int64_t>(velocity.size());
   std::vector<std::int64_t> caught(ranges(n), 0);
   parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
@@ -135,14 +128,7 @@ std::int64_t Motion<D>::move(const std::vector<Vec<D>>& velocity, double dt, dou
         ++caught[index(begin / range)];
     }
   });
-  for (const std::size_t b : moved) {
-    place(b, particles_.bodies[b].pose, box, particles_.position, &particles_.image);
-    // The mirror does not turn bodies back: a constituent outside the box is an alarm.
-    for (const std::int32_t p : dofs().constituents(b)) {
-      Vec<D> r = particles_.position[index(p)];
-      if (surroundings_.confine(r) && own.owns(std::int64_t{p})) ++caught.front();
-    }
-  }
+  if (!particles_.bodies.empty()) caught.front() += move_bodies(velocity, dt, box);
   leave_images(images_before);
   return own.ranks->sum(std::accumulate(caught.begin(), caught.end(), std::int64_t{0}));
 }
@@ -150,12 +136,9 @@ std::int64_t Motion<D>::move(const std::vector<Vec<D>>& velocity, double dt, dou
 template <int D>
 auto Motion<D>::times_inertia(const Stage<D>& stage, const Unknowns& q, double inertia)
     -> Unknowns {
+  if (inertia == 0.0) return Unknowns(q.size(), 0.0);
   Unknowns l = q;
-  if (dofs().bodies() > 0) {
-    std::vector<Vec<D>> velocity;
-    dofs().scatter(stage.arms, q, std::vector<Vec<D>>(stage.position.size()), velocity);
-    dofs().gather(stage.arms, velocity, l);
-  }
+  dofs().times_inertia(stage.arms, l);
   for (double& value : l) value *= inertia;
   return l;
 }
@@ -174,7 +157,7 @@ void Motion<D>::set_end_momentum(const Unknowns& p) {
   const std::vector<Vec<D>> known = particles_.end_velocity;
   Unknowns q = p;
   std::vector<Vec<D>> arms;
-  if (dofs().bodies() > 0) arms = arms_at(moved_in_, particles_.position);
+  if (dofs().bodies() > 0) arms_at(moved_in_, particles_.position, arms);
   dofs().divide_by_inertia(arms, q);
   cross_faces(q);
   dofs().scatter(arms, q, known, particles_.end_velocity);

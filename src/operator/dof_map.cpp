@@ -16,21 +16,35 @@ std::span<const double> flat(std::span<const Vec<D>> v) {
 }  // namespace
 
 template <int D>
-DofMap<D>::DofMap(const Particles<D>& particles) : owned_(particles.owned()) {
+DofMap<D>::DofMap(const Particles<D>& particles)
+    : constituents_(particles), owned_(particles.owned()) {
   const auto n = index(particles.size());
-  std::vector<std::int32_t> index_of;
-  for (const RigidBody<D>& body : particles.bodies) {
-    unknown_ += body.known ? 0 : 1;
-    if (index_of.empty()) index_of = particles.index_of_id();
-    body_.emplace_back();
-    for (const std::int64_t id : body.members) body_.back().push_back(index_of[index(id)]);
-  }
+  for (const RigidBody<D>& body : particles.bodies) unknown_ += body.known ? 0 : 1;
   std::vector<char> without(n);
   for (std::size_t i = 0; i < n; ++i) without[i] = particles.is_free(i) ? 0 : 1;
   free_ = NodeMap(without, block_size());
   if (unknown_ == 0) return;
   for (std::size_t i = 0; i < n; ++i) without[i] = particles.is_known(i) ? 1 : 0;
   mobile_ = NodeMap(without, block_size());
+}
+
+template <int D>
+RigidMotion<D> DofMap<D>::motion_of(std::size_t b, std::span<const double> q) const {
+  RigidMotion<D> motion;
+  for (std::size_t c = 0; c < D; ++c) {
+    motion.velocity.x[c] = q[body_node(b) * D + c];
+    motion.angular.x[c] = q[b * D + c];
+  }
+  return motion;
+}
+
+template <int D>
+void DofMap<D>::set(std::size_t b, const Vec<D>& linear, const Vec<D>& angular,
+                    std::span<double> q) const {
+  for (std::size_t c = 0; c < D; ++c) {
+    q[body_node(b) * D + c] = linear.x[c];
+    q[b * D + c] = angular.x[c];
+  }
 }
 
 template <int D>
@@ -56,20 +70,17 @@ void DofMap<D>::gather(std::span<const Vec<D>> arms, std::span<const Vec<D>> for
                        std::vector<double>& q) const {
   q.resize(index(unknowns()));
   free_.gather(flat(forces), std::span(q).subspan(free_node(0) * D));
-  for (std::size_t b = 0; b < unknown_; ++b) {
+  if (unknown_ == 0) return;
+  for_each_body<D>(unknown_, [&](std::size_t b, auto&) {
     Vec<D> force{}, moment{};
-    for (const std::int32_t particle : body_[b]) {
+    for (const std::int32_t particle : constituents(b)) {
       const auto p = index(particle);
       if (!owned_.owns(p)) continue;
       force += forces[p];
       moment += torque(arms[p], forces[p]);
     }
-    for (std::size_t c = 0; c < D; ++c) {
-      q[body_node(b) * D + c] = force.x[c];
-      q[b * D + c] = moment.x[c];
-    }
-  }
-  if (unknown_ == 0) return;
+    set(b, force, moment, q);
+  });
   owned_.ranks->sum(std::span(q).first(unknown_ * D));
   owned_.ranks->sum(std::span(q).last(unknown_ * D));
 }
@@ -80,35 +91,41 @@ void DofMap<D>::scatter(std::span<const Vec<D>> arms, std::span<const double> q,
   velocity.assign(known.begin(), known.end());
   if (!velocity.empty())
     free_.scatter(q.subspan(free_node(0) * D), {velocity.front().x.data(), velocity.size() * D});
-  for (std::size_t b = 0; b < unknown_; ++b) {
-    Vec<D> v, w;
-    for (std::size_t c = 0; c < D; ++c) {
-      v.x[c] = q[body_node(b) * D + c];
-      w.x[c] = q[b * D + c];
-    }
-    for (const std::int32_t particle : body_[b]) {
+  for_each_body<D>(unknown_, [&](std::size_t b, auto&) {
+    const RigidMotion<D> motion = motion_of(b, q);
+    for (const std::int32_t particle : constituents(b)) {
       const auto p = index(particle);
-      velocity[p] = v + swing(w, arms[p]);
+      velocity[p] = motion.velocity + swing(motion.angular, arms[p]);
     }
-  }
+  });
+}
+
+template <int D>
+void DofMap<D>::times_inertia(std::span<const Vec<D>> arms, std::vector<double>& q) const {
+  for_each_body<D>(unknown_, [&](std::size_t b, auto&) {
+    const RigidMotion<D> motion = motion_of(b, q);
+    Vec<D> linear{}, angular{};
+    for (const std::int32_t particle : constituents(b)) {
+      const Vec<D>& arm = arms[index(particle)];
+      const Vec<D> v = motion.velocity + swing(motion.angular, arm);
+      linear += v;
+      angular += torque(arm, v);
+    }
+    set(b, linear, angular, q);
+  });
 }
 
 template <int D>
 void DofMap<D>::divide_by_inertia(std::span<const Vec<D>> arms, std::vector<double>& l) const {
-  std::vector<Vec<D>> own;
-  for (std::size_t b = 0; b < unknown_; ++b) {
-    own.clear();
-    for (const std::int32_t particle : body_[b]) own.push_back(arms[index(particle)]);
-    double* const linear = &l[body_node(b) * D];
-    double* const angular = &l[b * D];
-    Vec<D> moment;
-    for (std::size_t c = 0; c < D; ++c) {
-      linear[c] /= static_cast<double>(own.size());
-      moment.x[c] = angular[c];
-    }
-    const Vec<D> w = angular_velocity<D>(own, moment);
-    for (std::size_t c = 0; c < D; ++c) angular[c] = w.x[c];
-  }
+  for_each_body<D>(unknown_, [&](std::size_t b, BodyScratch<D>& scratch) {
+    scratch.arms.clear();
+    for (const std::int32_t particle : constituents(b))
+      scratch.arms.push_back(arms[index(particle)]);
+    const RigidMotion<D> momentum = motion_of(b, l);
+    Vec<D> v = momentum.velocity;
+    for (double& component : v.x) component /= static_cast<double>(scratch.arms.size());
+    set(b, v, angular_velocity<D>(scratch.arms, momentum.angular), l);
+  });
 }
 
 template class DofMap<2>;

@@ -114,9 +114,8 @@ void add_known_friction(const PairNetwork<D>& network, std::span<const std::int3
   for (const std::int32_t p : known)
     for (const std::int32_t edge : network.edges_of(p)) {
       const auto k = index(edge);
-      const double sign = network.i[k] == p ? -1.0 : 1.0;
       const std::int32_t other = network.i[k] == p ? network.j[k] : network.i[k];
-      force[index(other)] += sign * friction_of(network, k, slip_of(network, k, velocity));
+      force[index(other)] -= friction_of(network, k, velocity[index(p)]);
     }
 }
 

@@ -79,53 +79,70 @@ class Writer {
     const bool known = std::any_of(particles_.group.begin(), particles_.group.end(),
                                    [](Group group) { return !group.is_free(); });
     if (wanted_ == Pairs::rigid && !known) return network_.resize(0);
-    // A list without skin has the edges themselves, but for a pair at the cutoff, to rounding.
-    if (known || list_.skin() > 0.0 ||
-        !write_rows([&](std::int64_t p) { return list_.partners(p); })) {
-      find_contacts();
-      write_rows([&](std::int64_t p) {
-        return std::span<const std::int32_t>(network_.scratch)
-            .subspan(index(candidates_[index(p)]), index(contacts_[index(p)]));
-      });
-    }
+    // A list without skin has the edges themselves and the rigid pairs, but for a pair at the cutoff, to rounding.
+    if (list_.skin() > 0.0 || wanted_ == Pairs::rigid ||
+        !write_all(known ? Rows::within : Rows::whole))
+      write_all(Rows::near);
     if (wanted_ == Pairs::moving) network_.index_rows();
   }
 
  private:
-  // Wanted partners closer than the cutoff, to `scratch` where the list's row begins in it.
-  void find_contacts() {
-    const auto n = index(list_.rows());
-    candidates_.assign(n + 1, 0);
-    contacts_.assign(n, 0);
-    for (std::size_t p = 0; p < n; ++p)
-      candidates_[p + 1] = candidates_[p] + static_cast<std::int64_t>(candidates_of(p).size());
-    if (network_.scratch.size() < index(candidates_.back()))
-      network_.scratch.resize(index(candidates_.back()));
-    parallel_ranges(list_.rows(), rows_per_block, [&](std::int64_t begin, std::int64_t end) {
-      Differences<D> pairs;
-      for (std::int64_t p = begin; p < end; ++p) find_contacts_of(index(p), pairs);
+  // Of a row of the list: all pairs, those that are wanted, or of these those closer than the cutoff.
+  enum class Rows { whole, within, near };
+
+  bool write_all(Rows rows) {
+    if (rows != Rows::whole) find_contacts(rows);
+    return write_rows([&](std::int64_t p) {
+      if (is_whole(index(p), rows)) return list_.partners(p);
+      return std::span<const std::int32_t>(network_.scratch)
+          .subspan(index(candidates_[index(p)]), index(contacts_[index(p)]));
     });
   }
 
   // A free particle has no rigid pairs.
-  std::span<const std::int32_t> candidates_of(std::size_t p) const {
-    if (wanted_ == Pairs::rigid && particles_.is_free(p)) return {};
+  bool is_whole(std::size_t p, Rows rows) const {
+    return rows == Rows::whole || (rows == Rows::within && particles_.is_free(p));
+  }
+
+  // Partners of each particle to `scratch`, where the list's row begins in it.
+  void find_contacts(Rows rows) {
+    const auto n = index(list_.rows());
+    candidates_.assign(n + 1, 0);
+    contacts_.assign(n, 0);
+    for (std::size_t p = 0; p < n; ++p)
+      candidates_[p + 1] =
+          candidates_[p] + static_cast<std::int64_t>(candidates_of(p, rows).size());
+    if (network_.scratch.size() < index(candidates_.back()))
+      network_.scratch.resize(index(candidates_.back()));
+    parallel_ranges(list_.rows(), rows_per_block, [&](std::int64_t begin, std::int64_t end) {
+      Differences<D> pairs;
+      for (std::int64_t p = begin; p < end; ++p) find_contacts_of(index(p), rows, pairs);
+    });
+  }
+
+  std::span<const std::int32_t> candidates_of(std::size_t p, Rows rows) const {
+    if (is_whole(p, rows) || (wanted_ == Pairs::rigid && particles_.is_free(p))) return {};
     return list_.partners(static_cast<std::int64_t>(p));
   }
 
-  void find_contacts_of(std::size_t p, Differences<D>& pairs) {
-    const auto partners = candidates_of(p);
+  void find_contacts_of(std::size_t p, Rows rows, Differences<D>& pairs) {
+    const auto partners = candidates_of(p, rows);
     const bool moving = wanted_ == Pairs::moving;
     std::int32_t* out = network_.scratch.data() + candidates_[p];
-    for (std::size_t k = 0; k < partners.size(); k += block) {
-      const auto some = partners.subspan(k, std::min(block, partners.size() - k));
-      pairs.size = 0;
-      for (const std::int32_t q : some) pairs.add(positions_[p], positions_[index(q)]);
-      pairs.close(kernel_, images_, box_);
-      for (std::size_t l = 0; l < some.size(); ++l) {
-        const bool moves = !rigid_pair(particles_.group[p], particles_.group[index(some[l])]);
-        *out = some[l];  // never beyond the row: as many were read
-        if (moves == moving && pairs.square[l] < reach2_) ++out;
+    const auto take = [&](std::int32_t q, bool near) {
+      const bool moves = !rigid_pair(particles_.group[p], particles_.group[index(q)]);
+      *out = q;  // never beyond the row: as many were read
+      if (near && moves == moving) ++out;
+    };
+    if (rows == Rows::within) {
+      for (const std::int32_t q : partners) take(q, true);
+    } else {
+      for (std::size_t k = 0; k < partners.size(); k += block) {
+        const auto some = partners.subspan(k, std::min(block, partners.size() - k));
+        pairs.size = 0;
+        for (const std::int32_t q : some) pairs.add(positions_[p], positions_[index(q)]);
+        pairs.close(kernel_, images_, box_);
+        for (std::size_t l = 0; l < some.size(); ++l) take(some[l], pairs.square[l] < reach2_);
       }
     }
     contacts_[p] = static_cast<std::int32_t>(out - (network_.scratch.data() + candidates_[p]));

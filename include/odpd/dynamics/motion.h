@@ -62,15 +62,23 @@ class Motion {
   void check_paths(const std::vector<Vec<D>>& velocity, double dt) const;
   void leave_images(const std::vector<std::int32_t>& before);
   std::vector<std::int32_t> moving_images() const;
-  std::vector<Vec<D>> arms_at(const Box<D>& box, std::span<const Vec<D>> positions);
+  void arms_at(const Box<D>& box, std::span<const Vec<D>> positions, std::vector<Vec<D>>& arms);
   void place_arms(Stage<D>& stage);
-  void count_boxes(std::size_t body, Stage<D>& stage);
+  void displace_bodies(const std::vector<Vec<D>>& velocity, double dt, const Box<D>& box,
+                       std::vector<Vec<D>>& positions);
+  /// Bodies, that is poses and constituents, move along the velocities of these. Returns constituents outside the box: the
+  /// mirror does not turn bodies back, so this is an alarm.
+  std::int64_t move_bodies(const std::vector<Vec<D>>& velocity, double dt, const Box<D>& box);
+
+  // Of one body, on any thread; `dofs` was called.
+  void count_boxes(std::size_t body, Stage<D>& stage) const;
   /// Moves a pose of the body along velocities of its constituents, wrapped in `box`. False when that changes no
   /// position.
   bool advance(std::size_t body, const std::vector<Vec<D>>& velocity, double dt, const Box<D>& box,
-               RigidPose<D>& pose);
+               BodyScratch<D>& scratch, RigidPose<D>& pose) const;
   void place(std::size_t body, const RigidPose<D>& pose, const Box<D>& box,
-             std::vector<Vec<D>>& positions, std::vector<typename Particles<D>::Image>* images);
+             std::vector<Vec<D>>& positions,
+             std::vector<typename Particles<D>::Image>* images) const;
 
   const Box<D> box_;
   Particles<D>& particles_;

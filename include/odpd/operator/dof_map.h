@@ -16,6 +16,7 @@
 #include "odpd/core/vec.h"
 #include "odpd/operator/node_map.h"
 #include "odpd/operator/translations.h"
+#include "odpd/particles/constituents.h"
 #include "odpd/particles/particles.h"
 
 namespace odpd {
@@ -41,7 +42,7 @@ class DofMap {
   std::span<const std::int32_t> free_particles() const { return free_.node_particles(); }
   std::size_t free_node(std::size_t k) const { return unknown_ + k; }
   /// Constituents of body b, of known motion or not, as indices in memory.
-  std::span<const std::int32_t> constituents(std::size_t b) const { return body_[b]; }
+  std::span<const std::int32_t> constituents(std::size_t b) const { return constituents_[b]; }
   /// Node of V of body b; that of its w is b.
   std::size_t body_node(std::size_t b) const { return unknown_ + index(free_.nodes()) + b; }
 
@@ -59,17 +60,22 @@ class DofMap {
   /// P q + known, with `known` read at the particles without unknowns.
   void scatter(std::span<const Vec<D>> arms, std::span<const double> q,
                std::span<const Vec<D>> known, std::vector<Vec<D>>& velocity) const;
+  /// q := P^T P q: momenta per mass from unknowns, those of bodies linear and angular.
+  void times_inertia(std::span<const Vec<D>> arms, std::vector<double>& q) const;
   /// (P^T P)^+ l: unknowns from momenta per mass, those of bodies linear and angular; no spin of a rod about its line.
   void divide_by_inertia(std::span<const Vec<D>> arms, std::vector<double>& l) const;
 
  private:
   /// Where this rank's particles stand among these, which ascend.
   Share run_of(std::span<const std::int32_t> particles) const;
+  /// The two nodes of a body, V and w, within unknowns, and back.
+  RigidMotion<D> motion_of(std::size_t b, std::span<const double> q) const;
+  void set(std::size_t b, const Vec<D>& linear, const Vec<D>& angular, std::span<double> q) const;
   const NodeMap& mobile_map() const { return unknown_ == 0 ? free_ : mobile_; }
 
   NodeMap free_;
   NodeMap mobile_;  // empty without bodies of unknown motion: the same as free_
-  std::vector<std::vector<std::int32_t>> body_;
+  Constituents constituents_;
   std::size_t unknown_ = 0;  // bodies
   Share owned_;              // particles
 };

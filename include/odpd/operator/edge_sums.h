@@ -38,8 +38,8 @@ void add_friction_forces(const PairNetwork<D>& network, std::span<const Vec<D>> 
 template <int D>
 void add_sliding_friction(const PairNetwork<D>& network, std::vector<Vec<D>>& force);
 
-/// The same on the partners of the particles `known` (indices in memory, ascending), for the motion of those alone: `velocity`
-/// of all others is zero. Costs as much as they have edges.
+/// The same on the partners of the particles `known` (indices in memory, ascending), by the motion of those alone: all others are
+/// at rest, whatever `velocity` says of them. Costs as much as they have edges.
 template <int D>
 void add_known_friction(const PairNetwork<D>& network, std::span<const std::int32_t> known,
                         std::span<const Vec<D>> velocity, std::vector<Vec<D>>& force);
