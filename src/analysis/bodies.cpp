@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "odpd/analysis/observer_keys.h"
 #include "odpd/core/index.h"
+#include "odpd/core/parallel.h"
+#include "odpd/geometry/pair_list.h"
 #include "odpd/operator/edge_sums.h"
 
 namespace odpd {
@@ -90,7 +93,8 @@ void Bodies<D>::add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& nois
   add_sliding_friction(stage.network, force);
   for (std::size_t b = 0; b < kind_.size(); ++b) {
     Vec<D> total{}, moment{};
-    for (const std::size_t p : members_[b]) {
+    for (const std::int32_t particle : members_[b]) {
+      const auto p = index(particle);
       if (!stage.network.owned.owns(p)) continue;
       total += weight * (force[p] + noise[p]);
       // The random torque acts with the arms of the step's start in both stages, as the scheme has it.
@@ -117,15 +121,15 @@ void Bodies<D>::add_motion(const Particles<D>& particles, const StepRecord<D>& r
   for (std::size_t b = 0; b < kind_.size(); ++b) {
     arms.clear();
     velocities.clear();
-    for (const std::size_t p : members_[b]) {
-      arms.push_back(start.arms[p]);
-      velocities.push_back(record.v_mid[p]);
+    for (const std::int32_t p : members_[b]) {
+      arms.push_back(start.arms[index(p)]);
+      velocities.push_back(record.v_mid[index(p)]);
     }
     RigidMotion<D> motion;
     if (scene_.body_settings(b).motion != BodyMotion::fixed)
       motion = rigid_motion<D>(arms, velocities);
     if (scene_.body_settings(b).motion == BodyMotion::free)
-      motion.velocity -= flow(members_[b][0], arms[0]);
+      motion.velocity -= flow(index(members_[b][0]), arms[0]);
     if (particles.ranks().rank() > 0) continue;  // every rank knows the bodies' motion
     double* const out = &sample[kind_[b] * width + D + turns];
     for (std::size_t c = 0; c < D; ++c) out[c] += share_[kind_[b]] * motion.velocity.x[c];
@@ -166,23 +170,52 @@ void Bodies<D>::follow(const Particles<D>& particles) {
   turns_.add(angle_, kind, D, rotations);
 }
 
+// Cells as wide as g(q) reaches say which particles may be near a body. Under shear these are cells along the edges of the sheared
+// cell, in which a distance along the flow may be longer.
 template <int D>
 void Bodies<D>::count_fluid(const Particles<D>& particles, const Stage<D>& stage) {
   const double per_particle = scene_.fluid_volume() / static_cast<double>(particles.free_count());
   const Share own = particles.owned();
+  const double reach = (1.0 + 1e-9) * bodies_.bin * static_cast<double>(bins_);
+  Box<D> straight = stage.box;
+  double tilt = 0.0;
+  if (straight.shear) tilt = std::abs(straight.offset) / straight.size[straight.shear->gradient];
+  straight.shear.reset();
+  std::vector<std::int32_t> fluid;
+  std::vector<Vec<D>> places;
+  for (auto i = index(own.first); i < index(own.end(particles.size())); ++i) {
+    if (!particles.is_free(i)) continue;
+    fluid.push_back(static_cast<std::int32_t>(i));
+    places.push_back(stage.box.straightened(stage.position[i]));
+  }
+  const CellList<D> cells(straight, (1.0 + tilt) * reach, places);
+  const std::size_t pieces = std::min<std::size_t>(kind_.size(), 16);
   std::vector<double> g(density_.width(), 0.0);
-  for (std::size_t b = 0; b < kind_.size(); ++b) {
-    Vec<D> centre = stage.position[members_[b][0]] - stage.arms[members_[b][0]];
-    stage.box.wrap(centre);
-    for (std::size_t i = 0; i < stage.position.size(); ++i) {
-      if (!particles.is_free(i) || !own.owns(i)) continue;
-      const double q = norm(stage.box.separation(stage.position[i], centre));
-      const auto bin = static_cast<std::size_t>(q / bodies_.bin);
-      if (bin < bins_)
-        g[kind_[b] * bins_ + bin] += share_[kind_[b]] * per_particle /
-                                     shell<D>(bodies_.bin * static_cast<double>(bin),
-                                              bodies_.bin * static_cast<double>(bin + 1));
+  std::vector<std::int64_t> counts(pieces * g.size(), 0);
+  parallel_blocks(static_cast<std::int64_t>(pieces), [&](std::int64_t piece) {
+    std::int64_t* const count = &counts[index(piece) * g.size()];
+    std::vector<std::int64_t> near;
+    for (std::size_t b = index(piece); b < kind_.size(); b += pieces) {
+      const auto first = index(members_[b][0]);
+      Vec<D> centre = stage.position[first] - stage.arms[first];
+      stage.box.wrap(centre);
+      cells.neighbourhood(cells.cell_of(stage.box.straightened(centre)), near);
+      for (const std::int64_t cell : near)
+        for (const std::int32_t k : cells.members(cell)) {
+          const Vec<D>& r = stage.position[index(fluid[index(k)])];
+          const double q = norm(stage.box.separation(r, centre));
+          const auto bin = static_cast<std::size_t>(q / bodies_.bin);
+          if (bin < bins_) ++count[kind_[b] * bins_ + bin];
+        }
     }
+  });
+  for (std::size_t at = 0; at < g.size(); ++at) {
+    const double bin = static_cast<double>(at % bins_);
+    const double each =
+        share_[at / bins_] * per_particle / shell<D>(bodies_.bin * bin, bodies_.bin * (bin + 1.0));
+    // One by one: a sum has the same bits however the particles were found.
+    for (std::size_t piece = 0; piece < pieces; ++piece)
+      for (std::int64_t k = counts[piece * g.size() + at]; k > 0; --k) g[at] += each;
   }
   own.ranks->sum(std::span(g));
   density_.add(g);
@@ -191,11 +224,7 @@ void Bodies<D>::count_fluid(const Particles<D>& particles, const Stage<D>& stage
 template <int D>
 void Bodies<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
   std::vector<double> sample(this->average().width(), 0.0);
-  const std::vector<std::int32_t> index_of = particles.index_of_id();
-  members_.assign(kind_.size(), {});
-  for (std::size_t b = 0; b < kind_.size(); ++b)
-    for (const std::int64_t id : particles.bodies[b].members)
-      members_[b].push_back(index(index_of[index(id)]));
+  members_ = Constituents(particles);
   std::vector<Vec<D>> noise(record.start.position.size());
   if (!record.edge_noise.empty())
     add_edge_forces<D>(record.start.network, record.edge_noise, noise);

@@ -15,6 +15,7 @@
 #include "odpd/analysis/displacements.h"
 #include "odpd/analysis/msd.h"
 #include "odpd/analysis/observer.h"
+#include "odpd/particles/constituents.h"
 
 namespace odpd {
 
@@ -56,10 +57,10 @@ class Bodies : public Observer<D> {
   BodiesSettings bodies_;
   bool in_time_;
   const Scene<D>& scene_;
-  std::vector<std::size_t> kind_;                  // of each body
-  std::vector<std::string> names_;                 // of each [[body]]
-  std::vector<double> share_;                      // 1/bodies of each [[body]]
-  std::vector<std::vector<std::size_t>> members_;  // of each body, in this sample
+  std::vector<std::size_t> kind_;   // of each body
+  std::vector<std::string> names_;  // of each [[body]]
+  std::vector<double> share_;       // 1/bodies of each [[body]]
+  Constituents members_;            // in this sample
   std::size_t bins_;
   // A sample: [[body]] after [[body]], then the fluid's velocity.
   BlockAverage density_;  // [kind * bins + bin]
