@@ -188,7 +188,7 @@ void Bodies<D>::count_fluid(const Particles<D>& particles, const Stage<D>& stage
     fluid.push_back(static_cast<std::int32_t>(i));
     places.push_back(stage.box.straightened(stage.position[i]));
   }
-  const CellList<D> cells(straight, (1.0 + tilt) * reach, places);
+  const CellList<D> cells(straight, std::hypot(1.0, tilt) * reach, places);
   const std::size_t pieces = std::min<std::size_t>(kind_.size(), 16);
   std::vector<double> g(density_.width(), 0.0);
   std::vector<std::int64_t> counts(pieces * g.size(), 0);

@@ -58,6 +58,41 @@ TYPED_TEST(MovingBodies, HaveTheSameBitsOnAnyThreadCount) {
   EXPECT_EQ(results[0], results[1]);
 }
 
+// Fifty bodies with mass in a sheared fluid, across the faces too.
+TYPED_TEST(MovingBodies, OfAnyNumberHaveTheSameBitsOnAnyThreadCount) {
+  constexpr int D = TypeParam::D;
+  constexpr std::size_t bodies = 50;
+  const int before = threads();
+  Box<D> box{support::uniform_vec<D>(D == 2 ? 8.0 : 4.5), {}};
+  box.periodic.fill(true);
+  box.shear = Shear{.rate = 5.0};
+  const DpdModel<D> model(1, {DpdParameters{}});
+  const NoSurroundings<D> nothing({.mass = 0.5, .kT = DpdParameters{}.kT});
+  std::vector<std::vector<Vec<D>>> results;
+  for (const int count : {1, 2, 4}) {
+    set_threads(count, 0);
+    Particles<D> particles;
+    for (const Vec<D>& r : support::random_points<D>(Vec<D>{}, box.size, bodies, 1)) {
+      RigidBody<D> body = support::simplex_body<D>();
+      body.pose.centre = r;
+      particles.add_body(body, box, 0);
+    }
+    for (const Vec<D>& r : support::random_points<D>(Vec<D>{}, box.size, 200, 2))
+      particles.add(r, 0);
+    Dynamics<D> dynamics(box, particles, model, nothing,
+                         make_solver({.name = "pcg", .tolerance = 1e-6}), {.reorder_every = 4});
+    const auto integrator = make_integrator<D>("trapezoidal");
+    for (Clock clock{.dt = 0.005, .total_steps = 10}; !clock.finished(); clock.advance())
+      integrator->step(dynamics, clock);
+    results.push_back(particles.position);
+    results.back().insert(results.back().end(), particles.end_velocity.begin(),
+                          particles.end_velocity.end());
+  }
+  set_threads(before, 0);
+  EXPECT_EQ(results[0], results[1]);
+  EXPECT_EQ(results[0], results[2]);
+}
+
 // With no friction a body spins freely: its angular momentum stays, whichever way it turns.
 template <int D>
 void expect_free_spin(const RigidBody<D>& body) {

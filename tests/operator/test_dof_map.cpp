@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "odpd/core/parallel.h"
 #include "odpd/operator/dof_map.h"
 #include "support/dimensions.h"
 #include "support/points.h"
@@ -90,6 +91,135 @@ TYPED_TEST(DofMapTest, InertiaDividesOutOfMomentaOfBodies) {
   for (std::size_t c = 0; c < D && D == 3; ++c) q[c] -= spin * u.x[c];
   for (std::size_t b = 0; b < 2 && D == 2; ++b) q[b * D + 1] = 0.0;  // unused
   for (std::size_t k = 0; k < q.size(); ++k) EXPECT_NEAR(l[k], q[k], 1e-13) << k;
+}
+
+// Forty free bodies of three to nine constituents, three of known motion, free particles and a wall, shuffled in memory.
+template <int D>
+struct BodyCrowd {
+  BodyCrowd() {
+    particles.walls = 1;
+    odpd::Box<D> box{support::uniform_vec<D>(20.0), {}};
+    box.periodic.fill(true);
+    for (std::size_t b = 0; b < 43; ++b) {
+      odpd::RigidBody<D> body;
+      body.known = b >= 40;
+      body.frame = support::random_vectors<D>(3 + b % 7, 50 + b);
+      Vec<D> mean{};
+      for (const Vec<D>& r : body.frame) mean += (1.0 / static_cast<double>(body.frame.size())) * r;
+      for (Vec<D>& r : body.frame) r -= mean;
+      particles.add_body(body, box, 0);
+      for (std::size_t k = 0; k < 4; ++k)
+        particles.add(Vec<D>{}, 0, k == 0 ? odpd::Group::wall(0) : odpd::Group());
+    }
+    const auto n = static_cast<std::size_t>(particles.size());
+    particles.reorder(support::random_order(n, 5));
+    arms.resize(n);
+    const auto index_of = particles.index_of_id();
+    for (const auto& body : particles.bodies)
+      for (std::size_t k = 0; k < body.frame.size(); ++k)
+        arms[static_cast<std::size_t>(index_of[static_cast<std::size_t>(body.members[k])])] =
+            body.frame[k];
+  }
+  odpd::Particles<D> particles;
+  std::vector<Vec<D>> arms;
+};
+
+TYPED_TEST(DofMapTest, ConstituentsAreTheMembersWhereverTheyLie) {
+  constexpr int D = TypeParam::D;
+  const BodyCrowd<D> crowd;
+  const DofMap<D> dofs(crowd.particles);
+  EXPECT_EQ(dofs.bodies(), 40);
+  for (std::size_t b = 0; b < 43; ++b) {
+    std::vector<std::int64_t> members;
+    for (const std::int32_t p : dofs.constituents(b))
+      members.push_back(crowd.particles.id[static_cast<std::size_t>(p)]);
+    EXPECT_EQ(members, crowd.particles.bodies[b].members);
+  }
+}
+
+// f . P q = P^T f . q, and P^T P by itself is what both make of it.
+TYPED_TEST(DofMapTest, ManyBodiesGatherAsTheTransposeOfTheirScatter) {
+  constexpr int D = TypeParam::D;
+  const BodyCrowd<D> crowd;
+  const DofMap<D> dofs(crowd.particles);
+  const std::size_t n = crowd.arms.size();
+  const auto force = support::random_vectors<D>(n, 1), known = support::random_vectors<D>(n, 2);
+  auto q = support::random_numbers(static_cast<std::size_t>(dofs.unknowns()), 3);
+  for (std::size_t b = 0; b < 40; ++b)
+    for (std::size_t c = odpd::rotation_components<D>; c < D; ++c) q[b * D + c] = 0.0;
+  std::vector<Vec<D>> velocity;
+  dofs.scatter(crowd.arms, q, known, velocity);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (crowd.particles.is_known(i)) {
+      EXPECT_EQ(velocity[i], known[i]);
+    }
+  }
+  dofs.scatter(crowd.arms, q, std::vector<Vec<D>>(n), velocity);
+  std::vector<double> load;
+  dofs.gather(crowd.arms, force, load);
+  double left = 0.0, right = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < n; ++i) left += dot(force[i], velocity[i]);
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    right += load[k] * q[k];
+    size += std::abs(load[k] * q[k]);
+  }
+  EXPECT_NEAR(left, right, 1e-14 * size);
+
+  std::vector<double> momentum = q, gathered;
+  dofs.times_inertia(crowd.arms, momentum);
+  dofs.gather(crowd.arms, velocity, gathered);
+  EXPECT_EQ(momentum, gathered);
+  dofs.divide_by_inertia(crowd.arms, momentum);
+  for (std::size_t k = 0; k < q.size(); ++k) EXPECT_NEAR(momentum[k], q[k], 1e-11);
+}
+
+TYPED_TEST(DofMapTest, ManyBodiesHaveTheSameBitsOnAnyThreadCount) {
+  constexpr int D = TypeParam::D;
+  const BodyCrowd<D> crowd;
+  const DofMap<D> dofs(crowd.particles);
+  const std::size_t n = crowd.arms.size();
+  const auto force = support::random_vectors<D>(n, 1);
+  const int before = odpd::threads();
+  std::vector<std::vector<double>> results;
+  for (const int count : {1, 2, 4}) {
+    odpd::set_threads(count, 0);
+    std::vector<double> q, momentum;
+    std::vector<Vec<D>> velocity;
+    dofs.gather(crowd.arms, force, q);
+    dofs.scatter(crowd.arms, q, force, velocity);
+    momentum = q;
+    dofs.times_inertia(crowd.arms, momentum);
+    q.insert(q.end(), momentum.begin(), momentum.end());
+    dofs.divide_by_inertia(crowd.arms, momentum);
+    q.insert(q.end(), momentum.begin(), momentum.end());
+    for (const Vec<D>& v : velocity) q.insert(q.end(), v.x.begin(), v.x.end());
+    results.push_back(q);
+  }
+  odpd::set_threads(before, 0);
+  EXPECT_EQ(results[0], results[1]);
+  EXPECT_EQ(results[0], results[2]);
+}
+
+// A body without a moment of inertia is an error on any thread, told by the one that lies first.
+TEST(ForEachBody, ThrowsWhatTheFirstThrows) {
+  const int before = odpd::threads();
+  for (const int count : {1, 2}) {
+    odpd::set_threads(count, 0);
+    std::vector<int> done(100, 0);
+    std::string what;
+    try {
+      odpd::for_each_body<2>(done.size(), [&](std::size_t b, auto&) {
+        if (b == 20 || b == 90) throw std::runtime_error(std::to_string(b));
+        done[b] = 1;
+      });
+    } catch (const std::runtime_error& e) {
+      what = e.what();
+    }
+    EXPECT_EQ(what, "20");
+    for (const std::size_t b : {0, 19, 32, 89, 99}) EXPECT_EQ(done[b], 1) << b;
+    for (const std::size_t b : {20, 21, 90, 91}) EXPECT_EQ(done[b], 0) << b;
+  }
+  odpd::set_threads(before, 0);
 }
 
 // A field of one number per particle decides for itself who is known: here a wall particle without a temperature of its own

@@ -54,36 +54,48 @@ template <class T>
 class EdgesTest : public ::testing::Test {};
 TYPED_TEST_SUITE(EdgesTest, support::Dimensions);
 
-TYPED_TEST(EdgesTest, OneEdgeForEveryPairWithAFreeParticle) {
+// Of those that may move relative to each other: not two of known velocity, nor two of one body. With and without a skin.
+TYPED_TEST(EdgesTest, OneEdgeForEveryPairThatMoves) {
   constexpr int D = TypeParam::D;
   Fluid<D> fluid(3.3, true, D == 2 ? 60 : 120, 5, 1.2);
-  const DpdModel<D> model(1, {DpdParameters{}});
-  fluid.connect(model);
-  std::set<std::pair<std::int32_t, std::int32_t>> expected;
-  std::int64_t known_pairs = 0;
   const auto& r = fluid.particles.position;
+  std::vector<std::int32_t> body(r.size(), -1);
+  for (std::size_t i = 0; i < r.size(); i += 2) {
+    if (!fluid.particles.is_free(i)) continue;
+    body[i] = static_cast<std::int32_t>(i / 20);
+    fluid.particles.group[i] = odpd::Group::free_body(body[i]);
+  }
+  const DpdModel<D> model(1, {DpdParameters{}});
+  std::set<std::pair<std::int32_t, std::int32_t>> expected;
+  std::int64_t known_pairs = 0, inner_pairs = 0;
   for (std::size_t i = 0; i < r.size(); ++i) {
     for (std::size_t j = i + 1; j < r.size(); ++j) {
       if (!(norm(fluid.box.separation(r[i], r[j])) < 1.0)) continue;
-      if (fluid.particles.is_free(i) || fluid.particles.is_free(j)) {
-        expected.emplace(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
-      } else {
+      if (fluid.particles.is_known(i) && fluid.particles.is_known(j)) {
         ++known_pairs;
+      } else if (body[i] >= 0 && body[i] == body[j]) {
+        ++inner_pairs;
+      } else {
+        expected.emplace(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
       }
     }
   }
   ASSERT_GT(known_pairs, 0) << "edges between known particles must be there to be left out";
+  ASSERT_GT(inner_pairs, 0);
   const PairNetwork<D>& n = fluid.network;
-  std::vector<std::pair<std::int32_t, std::int32_t>> found;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(n.size()); ++k) {
-    found.emplace_back(n.i[k], n.j[k]);
-    const auto i = static_cast<std::size_t>(n.i[k]), j = static_cast<std::size_t>(n.j[k]);
-    const Vec<D> d = fluid.box.separation(r[i], r[j]);
-    EXPECT_DOUBLE_EQ(n.r[k], norm(d));
-    EXPECT_NEAR(norm(n.r[k] * n.e[k] - d), 0.0, 1e-15) << "e points from j to i";
-    EXPECT_EQ(n.f_c[k], model.pair(n.r[k], {}, {}).f_c);
+  for (const double skin : {0.3, 0.0}) {
+    fluid.connect(model, skin);
+    std::vector<std::pair<std::int32_t, std::int32_t>> found;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(n.size()); ++k) {
+      found.emplace_back(n.i[k], n.j[k]);
+      const auto i = static_cast<std::size_t>(n.i[k]), j = static_cast<std::size_t>(n.j[k]);
+      const Vec<D> d = fluid.box.separation(r[i], r[j]);
+      EXPECT_DOUBLE_EQ(n.r[k], norm(d));
+      EXPECT_NEAR(norm(n.r[k] * n.e[k] - d), 0.0, 1e-15) << "e points from j to i";
+      EXPECT_EQ(n.f_c[k], model.pair(n.r[k], {}, {}).f_c);
+    }
+    EXPECT_EQ(found, decltype(found)(expected.begin(), expected.end())) << "ordered by (i, j)";
   }
-  EXPECT_EQ(found, decltype(found)(expected.begin(), expected.end())) << "ordered by (i, j)";
   EXPECT_EQ(n.particles, fluid.particles.size());
   EXPECT_FALSE(n.transverse);
 }
