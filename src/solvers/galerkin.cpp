@@ -65,13 +65,14 @@ class Elements {
 
   /// inside_ of a site with this tau, in units of the grid, which shear tilts.
   void stiffen(double tau) {
-    std::array<Vec<D>, D> axis;  // the grid's, per axis of space
-    for (std::size_t c = 0; c < D; ++c) {
-      Vec<D> unit{};
-      unit.x[c] = 1.0;
-      axis[c] = resistance_.box().straightened(unit);
-      for (std::size_t a = 0; a < D; ++a) axis[c].x[a] *= shape_.per_length.x[a];
-    }
+    std::array<Vec<D>, D> axis{};  // the grid's, per axis of space
+    const Box<D>& box = resistance_.box();
+    for (std::size_t c = 0; c < D; ++c) axis[c].x[c] = 1.0;
+    if (box.shear)
+      axis[index(box.shear->gradient)][box.shear->flow] =
+          -box.offset / box.size[box.shear->gradient];
+    for (Vec<D>& unit : axis)
+      for (std::size_t a = 0; a < D; ++a) unit.x[a] *= shape_.per_length.x[a];
     const RigidSites<D>& sites = rigid_->sites();
     for (std::size_t b = 0; b < index(sites.bodies()); ++b) {
       double radius = 0.0;  // in units of the grid

@@ -185,7 +185,7 @@ std::vector<std::vector<double>> probes(const odpd::System& system, std::size_t 
     for (std::size_t b = 0; b < static_cast<std::size_t>(sites.bodies()); ++b) {
       const auto& unused = sites.unused(b);
       const std::vector<double> w(&a[b * D], &a[(b + 1) * D]);
-      for (std::size_t k = 0; k < D * D; ++k) a[b * D + k / D] -= unused[k] * w[k % D];
+      for (std::size_t i = 0; i < D * D; ++i) a[b * D + i / D] -= unused[i] * w[i % D];
     }
     for (const auto& b : found) {
       const double overlap = support::dot(a, product(system, b));

@@ -38,10 +38,17 @@ std::vector<odpd::Vec<D>> rod(double length, double spacing) {
 
 template <int D>
 struct Suspension {
-  /// side^D bodies, `apart` from centre to centre, turned at random; fluid up to 0.3 from sites.
+  /// side^D bodies, `apart` from centre to centre, turned at random; fluid up to 0.3 from sites. `slid`: images along the last
+  /// direction lie so much of the box aside.
   Suspension(const std::vector<odpd::Vec<D>>& shape, int side, double apart, double shift = 0.0,
-             std::uint64_t seed = 3, bool hold = false)
+             std::uint64_t seed = 3, bool hold = false, double slid = 0.0)
       : fluid(apart * side, true), resistance(fluid.box, hold) {
+    if (slid > 0.0) {
+      fluid.box.shear =
+          odpd::Shear{.flow = 0, .gradient = D - 1, .rate = 1.0, .start = slid * fluid.box.size[0]};
+      fluid.box = fluid.box.at(0.0);
+      resistance.slide(fluid.box);
+    }
     const int bodies = D == 2 ? side * side : side * side * side;
     const auto shake = support::random_vectors<D>(static_cast<std::size_t>(bodies), seed);
     for (int b = 0; b < bodies; ++b) {
