@@ -8,7 +8,6 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <numbers>
 
 #include "odpd/core/error.h"
 
@@ -16,8 +15,12 @@ namespace odpd {
 
 namespace {
 
-constexpr std::array<double, 2> bytes_per_particle{1350.0, 2400.0}, bytes_per_edge{190.0, 205.0};
-constexpr std::array<double, 2> unit_ball{std::numbers::pi, 4.0 * std::numbers::pi / 3.0};
+// In 2D and 3D. The program and its libraries; then what grows, with free bodies more.
+constexpr double bytes_at_first = 45e6, bytes_per_body = 250.0;
+constexpr std::array<double, 2> bytes_per_particle{1110.0, 1980.0}, bytes_per_edge{204.0, 230.0};
+constexpr std::array<double, 2> more_per_particle{65.0, 110.0}, bytes_per_site{150.0, 60.0};
+// Of larger bodies inner pairs count as edges: to look at all would take longer than a moment.
+constexpr std::size_t most_sites = 4000;
 
 // As place_walls makes them.
 template <int D>
@@ -34,6 +37,16 @@ double wall_particles(const SceneSettings<D>& scene) {
       sum += particles;
     }
   return sum;
+}
+
+// Pairs inside a body that would be edges in a fluid.
+template <int D>
+double inner_pairs(const std::vector<Vec<D>>& shape, double cutoff) {
+  if (shape.size() > most_sites) return 0.0;
+  double pairs = 0.0;
+  for (std::size_t i = 0; i < shape.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) pairs += norm(shape[i] - shape[j]) < cutoff ? 1.0 : 0.0;
+  return pairs;
 }
 
 std::string in_units(double bytes) {
@@ -63,16 +76,33 @@ double machine_limit() {
 }  // namespace
 
 template <int D>
-MemoryNeed memory_need(const SceneSettings<D>& scene) {
+double run_bytes(const RunSize& size) {
   constexpr std::size_t d = D - 2;
+  const double per_particle =
+      bytes_per_particle[d] + (size.bodies > 0.0 ? more_per_particle[d] : 0.0);
+  return bytes_at_first + per_particle * size.particles + bytes_per_edge[d] * size.edges +
+         bytes_per_body * size.bodies + bytes_per_site[d] * size.sites;
+}
+
+template <int D>
+MemoryNeed memory_need(const SceneSettings<D>& scene) {
   struct Part {
     double particles;
     std::string keys;
   };
   const bool file = scene.start == StartKind::file;
-  double in_bodies = 0.0;
-  for (const BodySettings<D>& body : scene.bodies)
-    in_bodies += static_cast<double>(body.bodies()) * static_cast<double>(body.shape.size());
+  const double r_c = scene.model->cutoff();
+  MemoryNeed need;
+  double in_bodies = 0.0, within_bodies = 0.0;
+  for (const BodySettings<D>& body : scene.bodies) {
+    const double bodies = static_cast<double>(body.bodies());
+    const double sites = bodies * static_cast<double>(body.shape.size());
+    in_bodies += sites;
+    within_bodies += bodies * inner_pairs(body.shape, r_c);
+    if (body.motion != BodyMotion::free) continue;
+    need.size.bodies += bodies;
+    need.size.sites += sites;
+  }
   double in_molecules = 0.0;
   for (const MoleculeSettings<D>& m : scene.molecules)
     in_molecules += static_cast<double>(m.molecules()) * static_cast<double>(m.beads());
@@ -87,16 +117,16 @@ MemoryNeed memory_need(const SceneSettings<D>& scene) {
        {wall_particles(scene), "raise the spacing or lower the count of wall.layers"},
        {in_bodies, "lower body.count, or the particles of its shape"},
        {file ? 0.0 : in_molecules, "lower molecule.count or the beads of it"}}};
-  MemoryNeed need;
-  for (const Part& share : shares) need.particles += share.particles;
+  double& n = need.size.particles;
+  for (const Part& share : shares) n += share.particles;
   need.keys = std::max_element(shares.begin(), shares.end(), [](const Part& a, const Part& b) {
                 return a.particles < b.particles;
               })->keys;
-  const double r_c = scene.model->cutoff();
-  need.edges = 0.5 * need.particles * need.particles / volume * unit_ball[d] * std::pow(r_c, D);
+  const double pairs = 0.5 * n * n / volume * unit_ball_volume<D> * std::pow(r_c, D);
+  need.size.edges = std::max(0.0, pairs - within_bodies);
   // Position and velocity, image, identity, species and group.
-  need.least = need.particles * (2.0 * sizeof(Vec<D>) + D * sizeof(std::int32_t) + 16.0);
-  need.bytes = bytes_per_particle[d] * need.particles + bytes_per_edge[d] * need.edges;
+  need.least = n * (2.0 * sizeof(Vec<D>) + D * sizeof(std::int32_t) + 16.0);
+  need.bytes = run_bytes<D>(need.size);
   return need;
 }
 
@@ -106,7 +136,7 @@ std::string memory_text(const MemoryNeed& need) {
   return fmt::format(
       "not enough memory: {:.6g} particles with about {:.2g} edges between them need about {}, and "
       "there is {} ({}): {}",
-      need.particles, need.edges, in_units(need.bytes), in_units(memory_limit()),
+      need.size.particles, need.size.edges, in_units(need.bytes), in_units(memory_limit()),
       process_limit() < machine_limit() ? "ulimit -v" : "of the machine, with swap", need.keys);
 }
 
@@ -116,6 +146,8 @@ void check_memory(const SceneSettings<D>& scene) {
   if (need.least > memory_limit()) throw Error(memory_text(need), 2);
 }
 
+template double run_bytes<2>(const RunSize&);
+template double run_bytes<3>(const RunSize&);
 template MemoryNeed memory_need<2>(const SceneSettings<2>&);
 template MemoryNeed memory_need<3>(const SceneSettings<3>&);
 template void check_memory<2>(const SceneSettings<2>&);

@@ -9,7 +9,7 @@ before=$(listing)
 
 expect_exit 0 "$odpd" run box --dry-run
 expect_text "$out_text" 'a small periodic box' '64 free particles' '0 of known velocity' edges '40 steps' \
-  '10 of them equilibration' 'dt = 0.005' 'solver pcg' MiB 'ms per stage' \
+  '10 of them equilibration' 'dt = 0.005' 'solver pcg' MiB 'ms per step' \
   '+ conservative force' '+ random force' '- inertia' '- walls' '+ solves per step' '2, integrator trapezoidal' '- assembled matrix'
 expect test ! -s "$err_text"
 # About 9 to 14 neighbours within the cutoff at this density, two ends to an edge.
@@ -51,9 +51,47 @@ for case in "$source_root"/cases/*/case.toml; do
   show_texts
 done
 
+# Memory: what --dry-run says is within a fifth of the largest resident memory of a run, with free bodies as without. (With
+# sanitizers a program needs several times as much.)
+limited() { (ulimit -v "$1" && shift && "$odpd" "$@"); }
+crowd() { # directory, dimension, edge of the box, particles of the fluid, lines of the body
+  mkdir "$1"
+  local size=$3 periodic=true
+  for ((c = 1; c < $2; ++c)); do size+=", $3" periodic+=", true"; done
+  printf 'title = "a crowd"\ndimension = %s\n[box]\nsize = [%s]\nperiodic = [%s]\n' "$2" "$size" "$periodic" >"$1/case.toml"
+  printf '[fluid]\ncount = %s\nkT = 1.0\ncutoff = 1.0\na = 18.5\ngamma = 4.5\ns = 0.5\nzeta_0 = 0.05\n%s\n' "$4" "$5" >>"$1/case.toml"
+  printf '[start]\nrelax_sweeps = 5\n[integrator]\nname = "trapezoidal"\ndt = 0.001\n[solver]\nname = "pcg"\n' >>"$1/case.toml"
+  printf '[run]\nduration = 0.002\n[output]\npictures = false\n' >>"$1/case.toml"
+}
+largest_resident='import resource, subprocess, sys
+subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)'
+crowd disks 2 70.7 10500 '[[body]]
+shape = "disk"
+radius = 0.8
+count = 500
+clearance = 0.3'
+crowd spheres 3 17.1 10000 '[[body]]
+shape = "sphere"
+radius = 0.8
+points_on_sphere = 30
+count = 333
+clearance = 0.3'
+crowd fluid 3 17.1 20000 ''
+if have_python && limited 8000000 --version >"$out_text" 2>&1; then
+  for name in disks spheres fluid; do
+    expect_exit 0 "$odpd" run $name --dry-run --threads 1
+    estimate=$(sed -n 's/.*about \([0-9.]*\) MiB.*/\1/p' "$out_text")
+    kibibytes=$("$python" -c "$largest_resident" "$odpd" run $name --threads 1 --out $name/run)
+    expect "$python" -c "assert abs($estimate / ($kibibytes / 1024) - 1) < 0.2, '$name: $estimate MiB, and it took $kibibytes KiB'"
+    rm -r $name/run
+  done
+else
+  skip 'memory of a run: no python3, or this build does not start under a limit'
+fi
+
 # A case that does not fit into the memory there is: size and memory are told without building it, by the run as well. (With
 # sanitizers the program itself needs more than any such limit.)
-limited() { (ulimit -v "$1" && shift && "$odpd" "$@"); }
 if limited 8000000 --version >"$out_text" 2>&1; then
   huge=(--set fluid.count=1000000000 --set 'box.size=[15811.0, 15811.0]')
   sed '/^density/d' box/case.toml >box/counted.toml

@@ -6,7 +6,8 @@
 
 namespace odpd {
 
-/// Evaluates and solves the first stage once to measure it; changes no file.
+/// Takes two steps, with their measurements, on the scene of the case, and measures the second; changes no file. Its memory is that
+/// of run_bytes (app/memory.h).
 template <int D>
 std::string dry_run_text(Simulation<D>& simulation);
 

@@ -1,16 +1,27 @@
 #pragma once
 // The memory that a case needs, known before anything of its size is built:
 //
-//   particles N from counts, densities and layers;  edges E = N/2 (N/V) S_d r_c^d, S_d the volume of the unit ball
-//   bytes = 1350 N + 190 E (2D),  2400 N + 205 E (3D)
+//   particles N from counts, densities and layers;  edges E = N/2 (N/V) S_d r_c^d, S_d the volume of the unit ball, less pairs
+//   inside a body
+//   bytes = 45e6 + 1110 N + 204 E (2D),  45e6 + 1980 N + 230 E (3D)
+//         + 65 N + 150 N_s + 250 B (2D), 110 N + 60 N_s + 250 B (3D) with B free bodies of N_s sites in all
 //
 // The coefficients are those of the largest resident memory of runs with pcg and trapezoidal (docs/performance.md).
 #include "odpd/scene/scene_settings.h"
 
 namespace odpd {
 
-struct MemoryNeed {
+struct RunSize {
   double particles = 0.0, edges = 0.0;
+  double bodies = 0.0, sites = 0.0;  ///< free bodies, and their constituents
+};
+
+/// At the peak of a run, about.
+template <int D>
+double run_bytes(const RunSize& size);
+
+struct MemoryNeed {
+  RunSize size;
   double least = 0.0;  ///< bytes of the arrays of particles alone
   double bytes = 0.0;  ///< of all, about
   std::string keys;    ///< which make it less, in words
