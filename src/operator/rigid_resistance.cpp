@@ -10,7 +10,7 @@ namespace odpd {
 
 namespace {
 
-// target += factor left^T middle right, D x D row-major.
+// target += left^T middle right, D x D row-major.
 template <int D>
 void add_triple_product(const double* left, const double* middle, const double* right,
                         double* target) {
@@ -40,9 +40,9 @@ void RigidResistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>&
   mobile_.rebuild(network, dofs, particles, positions, shift, stiffness_time, bond_time, arms);
   dofs_ = dofs.bodies() > 0 ? &dofs : nullptr;
   if (dofs_ == nullptr) return;
-  sites_.rebuild(dofs, arms);
+  map_.rebuild(dofs, arms);
   node_.resize(index(dofs.mobile()));
-  site_of_.resize(node_.size());
+  number_.resize(node_.size());
   const std::span<const std::int32_t> free = dofs.free_particles();
   parallel_for(std::ssize(free), [&](std::int64_t k) {
     node_[index(dofs.mobile_of(index(free[index(k)])))] =
@@ -51,11 +51,11 @@ void RigidResistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>&
   root_mass_.resize(index(dofs.bodies()));
   parallel_for(dofs.bodies(), [&](std::int64_t body) {
     const auto b = index(body);
-    root_mass_[b] = 1.0 / sites_.inverse_root_mass(b);
-    for (auto site = sites_.begin(b); site < sites_.end(b); ++site) {
-      const auto row = index(sites_.rows()[index(site)]);
+    root_mass_[b] = 1.0 / map_.inverse_root_mass(b);
+    for (auto member = map_.begin(b); member < map_.end(b); ++member) {
+      const auto row = index(map_.rows()[index(member)]);
       node_[row] = -static_cast<std::int32_t>(body) - 1;
-      site_of_[row] = static_cast<std::int32_t>(site);
+      number_[row] = static_cast<std::int32_t>(member);
     }
   });
   null_motions_.clear();
@@ -80,17 +80,17 @@ void RigidResistance<D>::to_particles(std::span<const double> y, std::span<doubl
     if (node < 0) return;
     for (std::size_t c = 0; c < D; ++c) v[index(row) * D + c] = y[index(node) * D + c];
   });
-  parallel_blocks(sites_.bodies(), [&](std::int64_t body) {
+  parallel_blocks(map_.bodies(), [&](std::int64_t body) {
     const auto b = index(body);
-    const RigidMotion<D> motion = sites_.motion(b, &y[linear_node(b) * D], &y[b * D]);
-    for (auto site = index(sites_.begin(b)); site < index(sites_.end(b)); ++site) {
-      const Vec<D> u = motion.velocity + swing(motion.angular, sites_.arms()[site]);
-      for (std::size_t c = 0; c < D; ++c) v[index(sites_.rows()[site]) * D + c] = u.x[c];
+    const RigidMotion<D> motion = map_.motion(b, &y[linear_node(b) * D], &y[b * D]);
+    for (auto member = index(map_.begin(b)); member < index(map_.end(b)); ++member) {
+      const Vec<D> u = motion.velocity + swing(motion.angular, map_.arms()[member]);
+      for (std::size_t c = 0; c < D; ++c) v[index(map_.rows()[member]) * D + c] = u.x[c];
     }
   });
 }
 
-/// y = P^T f, with the sites of all ranks.
+/// y = P^T f, with the constituents of all ranks.
 template <int D>
 void RigidResistance<D>::from_particles(std::span<const double> f, std::span<double> y) const {
   const Share own = mobile_.share();
@@ -99,19 +99,19 @@ void RigidResistance<D>::from_particles(std::span<const double> f, std::span<dou
     if (node < 0) return;
     for (std::size_t c = 0; c < D; ++c) y[index(node) * D + c] = f[index(row) * D + c];
   });
-  parallel_blocks(sites_.bodies(), [&](std::int64_t body) {
+  parallel_blocks(map_.bodies(), [&](std::int64_t body) {
     const auto b = index(body);
     RigidLoad<D> load;
-    for (auto site = index(sites_.begin(b)); site < index(sites_.end(b)); ++site) {
-      const auto row = index(sites_.rows()[site]);
+    for (auto member = index(map_.begin(b)); member < index(map_.end(b)); ++member) {
+      const auto row = index(map_.rows()[member]);
       if (!own.owns(row)) continue;
       const Vec<D> force = vector_at<D>(f, row);
       load.force += force;
-      load.torque += torque(sites_.arms()[site], force);
+      load.torque += torque(map_.arms()[member], force);
     }
-    sites_.load(b, load, &y[linear_node(b) * D], &y[b * D]);
+    map_.load(b, load, &y[linear_node(b) * D], &y[b * D]);
   });
-  const std::size_t of_bodies = index(sites_.bodies()) * D;
+  const std::size_t of_bodies = index(map_.bodies()) * D;
   own.ranks->sum(y.first(of_bodies));
   own.ranks->sum(y.last(of_bodies));
 }
@@ -120,7 +120,7 @@ template <int D>
 template <class Change>
 void RigidResistance<D>::for_each_body(std::span<double> x, const Change& change) const {
   if (dofs_ == nullptr) return;
-  parallel_for(sites_.bodies(), [&](std::int64_t body) {
+  parallel_for(map_.bodies(), [&](std::int64_t body) {
     const auto b = index(body);
     change(b, &x[linear_node(b) * D], &x[b * D]);
   });
@@ -129,22 +129,22 @@ void RigidResistance<D>::for_each_body(std::span<double> x, const Change& change
 template <int D>
 void RigidResistance<D>::scale_load(std::span<double> load) const {
   for_each_body(load, [&](std::size_t b, double* linear, double* angular) {
-    sites_.load(b, {vector_at<D>({linear, D}, 0), vector_at<D>({angular, D}, 0)}, linear, angular);
+    map_.load(b, {vector_at<D>({linear, D}, 0), vector_at<D>({angular, D}, 0)}, linear, angular);
   });
 }
 
 template <int D>
 void RigidResistance<D>::scale_velocity(std::span<double> q) const {
   for_each_body(q, [&](std::size_t b, double* linear, double* angular) {
-    sites_.unknowns(b, {vector_at<D>({linear, D}, 0), vector_at<D>({angular, D}, 0)}, linear,
-                    angular);
+    map_.unknowns(b, {vector_at<D>({linear, D}, 0), vector_at<D>({angular, D}, 0)}, linear,
+                  angular);
   });
 }
 
 template <int D>
 void RigidResistance<D>::unscale_velocity(std::span<double> y) const {
   for_each_body(y, [&](std::size_t b, double* linear, double* angular) {
-    const RigidMotion<D> motion = sites_.motion(b, linear, angular);
+    const RigidMotion<D> motion = map_.motion(b, linear, angular);
     std::copy_n(motion.velocity.x.begin(), D, linear);
     std::copy_n(motion.angular.x.begin(), D, angular);
   });
@@ -157,20 +157,20 @@ void RigidResistance<D>::apply(std::span<const double> x, std::span<double> y) c
   to_particles(x, velocity_);
   mobile_.apply(velocity_, force_);
   from_particles(force_, y);
-  for (std::size_t b = 0; b < index(sites_.bodies()); ++b)
+  for (std::size_t b = 0; b < index(map_.bodies()); ++b)
     for (std::size_t row = 0; row < D; ++row)
       for (std::size_t col = 0; col < D; ++col)
-        y[b * D + row] += sites_.unused(b)[row * D + col] * x[b * D + col];
+        y[b * D + row] += map_.unused(b)[row * D + col] * x[b * D + col];
 }
 
 template <int D>
-auto RigidResistance<D>::lever(std::size_t b, std::size_t site) const ->
+auto RigidResistance<D>::lever(std::size_t b, std::size_t member) const ->
     typename Resistance<D>::Block {
   typename Resistance<D>::Block map;
   for (std::size_t c = 0; c < D; ++c) {
     Vec<D> w;
-    for (std::size_t k = 0; k < D; ++k) w.x[k] = sites_.turn(b)[k * D + c];
-    const Vec<D> v = swing(w, sites_.arms()[site]);
+    for (std::size_t k = 0; k < D; ++k) w.x[k] = map_.turn(b)[k * D + c];
+    const Vec<D> v = swing(w, map_.arms()[member]);
     for (std::size_t k = 0; k < D; ++k) map[k * D + c] = v.x[k];
   }
   return map;
@@ -179,21 +179,21 @@ auto RigidResistance<D>::lever(std::size_t b, std::size_t site) const ->
 template <int D>
 void RigidResistance<D>::body_blocks(std::vector<double>& blocks) const {
   constexpr std::size_t all = 2 * D, size = all * all;
-  blocks.assign(index(sites_.bodies()) * size, 0.0);
+  blocks.assign(index(map_.bodies()) * size, 0.0);
   const Share own = mobile_.share();
   // No edges inside a body: its constituents' diagonal blocks are all that falls on its own.
-  parallel_blocks(sites_.bodies(), [&](std::int64_t body) {
+  parallel_blocks(map_.bodies(), [&](std::int64_t body) {
     const auto b = index(body);
     double* const block = &blocks[b * size];
-    for (auto site = index(sites_.begin(b)); site < index(sites_.end(b)); ++site) {
-      const auto row = index(sites_.rows()[site]);
+    for (auto member = index(map_.begin(b)); member < index(map_.end(b)); ++member) {
+      const auto row = index(map_.rows()[member]);
       if (!own.owns(row)) continue;
-      const auto turn = lever(b, site);
+      const auto turn = lever(b, member);
       double map[D][all];
       for (std::size_t k = 0; k < D; ++k)
         for (std::size_t c = 0; c < D; ++c) {
           map[k][c] = turn[k * D + c];
-          map[k][D + c] = k == c ? sites_.inverse_root_mass(b) : 0.0;
+          map[k][D + c] = k == c ? map_.inverse_root_mass(b) : 0.0;
         }
       for (std::size_t k = 0; k < D; ++k) {
         double pull[all] = {};
@@ -206,10 +206,10 @@ void RigidResistance<D>::body_blocks(std::vector<double>& blocks) const {
     }
   });
   own.ranks->sum(std::span(blocks));
-  for (std::size_t b = 0; b < index(sites_.bodies()); ++b)
+  for (std::size_t b = 0; b < index(map_.bodies()); ++b)
     for (std::size_t row = 0; row < D; ++row)
       for (std::size_t col = 0; col < D; ++col)
-        blocks[b * size + row * all + col] += sites_.unused(b)[row * D + col];
+        blocks[b * size + row * all + col] += map_.unused(b)[row * D + col];
 }
 
 template <int D>
@@ -222,7 +222,7 @@ void RigidResistance<D>::block_diagonal(std::span<double> blocks) const {
   });
   std::vector<double> whole;
   body_blocks(whole);
-  for (std::size_t b = 0; b < index(sites_.bodies()); ++b)
+  for (std::size_t b = 0; b < index(map_.bodies()); ++b)
     for (std::size_t row = 0; row < D; ++row) {
       const double* const angular = &whole[(b * 2 * D + row) * 2 * D];
       const double* const linear = angular + 2 * D * D + D;
@@ -263,8 +263,8 @@ const BlockCsr& RigidResistance<D>::matrix() const {
       }
       const auto b = index(-node_[other] - 1);
       Block shift = unit;
-      for (double& entry : shift) entry *= sites_.inverse_root_mass(b);
-      const Block turn = lever(b, index(site_of_[other]));
+      for (double& entry : shift) entry *= map_.inverse_root_mass(b);
+      const Block turn = lever(b, index(number_[other]));
       add_triple_product<D>(left.data(), value, shift.data(), at(linear_node(b)));
       add_triple_product<D>(left.data(), value, turn.data(), at(b));
     }
@@ -280,14 +280,14 @@ const BlockCsr& RigidResistance<D>::matrix() const {
     m.start.push_back(static_cast<std::int32_t>(m.column.size()));
     blocks.clear();
   };
-  const auto bodies = index(sites_.bodies());
+  const auto bodies = index(map_.bodies());
   const auto add_body = [&](std::size_t b, bool angular) {
     Block shift = unit;
-    for (double& entry : shift) entry *= sites_.inverse_root_mass(b);
-    for (auto site = index(sites_.begin(b)); site < index(sites_.end(b)); ++site)
-      add_row(index(sites_.rows()[site]), angular ? lever(b, site) : shift);
+    for (double& entry : shift) entry *= map_.inverse_root_mass(b);
+    for (auto member = index(map_.begin(b)); member < index(map_.end(b)); ++member)
+      add_row(index(map_.rows()[member]), angular ? lever(b, member) : shift);
     if (angular)
-      for (std::size_t k = 0; k < D * D; ++k) at(b)[k] += sites_.unused(b)[k];
+      for (std::size_t k = 0; k < D * D; ++k) at(b)[k] += map_.unused(b)[k];
     finish();
   };
   for (std::size_t b = 0; b < bodies; ++b) add_body(b, true);

@@ -63,7 +63,7 @@ class Elements {
   static constexpr int triangle = GridShape<D>::triangle;
   static constexpr int size = element_floats<D>;
 
-  /// inside_ of a site with this tau, in units of the grid, which shear tilts.
+  /// inside_ of a constituent with this tau, in units of the grid, which shear tilts.
   void stiffen(double tau) {
     std::array<Vec<D>, D> axis{};  // the grid's, per axis of space
     const Box<D>& box = resistance_.box();
@@ -73,11 +73,11 @@ class Elements {
           -box.offset / box.size[box.shear->gradient];
     for (Vec<D>& unit : axis)
       for (std::size_t a = 0; a < D; ++a) unit.x[a] *= shape_.per_length.x[a];
-    const RigidSites<D>& sites = rigid_->sites();
-    for (std::size_t b = 0; b < index(sites.bodies()); ++b) {
+    const RigidMap<D>& map = rigid_->map();
+    for (std::size_t b = 0; b < index(map.bodies()); ++b) {
       double radius = 0.0;  // in units of the grid
-      for (auto s = index(sites.begin(b)); s < index(sites.end(b)); ++s) {
-        Vec<D> arm = sites.arms()[s];
+      for (auto s = index(map.begin(b)); s < index(map.end(b)); ++s) {
+        Vec<D> arm = map.arms()[s];
         for (std::size_t c = 0; c < D; ++c) arm.x[c] *= shape_.per_length.x[c];
         radius = std::max(radius, norm(arm));
       }
@@ -109,7 +109,7 @@ class Elements {
   const RigidResistance<D>* rigid_;
   std::vector<float> stiffness_;  // per body
   std::array<float, index(triangle* triangle)>
-      inside_{};  // moments of a site, as kernels want them
+      inside_{};  // moments of a constituent, as kernels want them
   ElementView view_{};
   EdgeView edges_{};
   FloatArray positions_, sums_;
@@ -125,7 +125,7 @@ void Elements<D>::add_node(std::int64_t n) {
   const auto links = resistance_.links(node);
   Triangle<D> anchor{};
   if (!resistance_.anchors().empty()) anchor = triangle_of<D>(resistance_.anchors()[node]);
-  const bool of_body = rigid_ != nullptr && rigid_->is_site(node);
+  const bool of_body = rigid_ != nullptr && rigid_->is_constituent(node);
   multilevel_kernels().add_node[D - 2](
       view_, edges_, n, reinterpret_cast<const std::int32_t*>(links.data()), std::ssize(links),
       resistance_.anchors().empty() ? nullptr : anchor.data(), of_body ? inside_.data() : nullptr,
@@ -192,14 +192,14 @@ FrictionSpread friction_spread(const Resistance<D>& resistance, const RigidResis
   const Share share = resistance.share();
   std::array<double, 5> sums{};
   auto& [moment, total, ties, tied, counted] = sums;
-  const bool of_free = rigid != nullptr && rigid->sites().sites() < resistance.nodes();
+  const bool of_free = rigid != nullptr && rigid->map().constituents() < resistance.nodes();
   const std::int64_t looked_at =
-      resistance.nodes() - (of_free ? rigid->sites().sites() : std::int64_t{0});
+      resistance.nodes() - (of_free ? rigid->map().constituents() : std::int64_t{0});
   // Some hundred particles tell it well enough.
   const std::int64_t step = std::max<std::int64_t>(1, looked_at / 256);
   std::int64_t until_next = 0;
   for (std::int64_t n = 0; n < resistance.nodes(); ++n) {
-    if ((of_free && rigid->is_site(index(n))) || until_next-- > 0) continue;
+    if ((of_free && rigid->is_constituent(index(n))) || until_next-- > 0) continue;
     until_next = step - 1;
     if (!share.owns(n)) continue;
     counted += 1.0;

@@ -87,8 +87,8 @@ void MixedCg<D>::invert_diagonal() {
     const std::int32_t node = rows_.node_of_place()[index(place)];
     float* out =
         inverse_.data() + place / slice_places * slice_places * triangle + place % slice_places;
-    typename Resistance<D>::Block m{};  // zero for sites of bodies
-    if (node >= 0 && !is_site(node)) m = inverse_of(resistance_->diagonal()[index(node)]);
+    typename Resistance<D>::Block m{};  // zero for constituents of bodies
+    if (node >= 0 && !is_constituent(node)) m = inverse_of(resistance_->diagonal()[index(node)]);
     if (std::isnan(m[0]) && share_.owns(std::int64_t{node})) lower(first_bad, node);
     for (std::size_t row = 0; row < D; ++row)
       for (std::size_t col = row; col < D; ++col, out += slice_places)

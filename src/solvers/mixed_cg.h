@@ -43,7 +43,9 @@ class MixedCg : public CgEngine {
   static constexpr std::int64_t triangle = D * (D + 1) / 2;
   enum class Outcome { reached, gave_up, out_of_iterations };
 
-  bool is_site(std::int32_t row) const { return rigid_ != nullptr && rigid_->is_site(index(row)); }
+  bool is_constituent(std::int32_t row) const {
+    return rigid_ != nullptr && rigid_->is_constituent(index(row));
+  }
   /// Node of the system whose unknowns a place holds, -1 for none of its own.
   std::int32_t unknown_of(std::int64_t place) const {
     const std::int32_t row = rows_.node_of_place()[index(place)];

@@ -12,10 +12,10 @@ namespace odpd {
 
 namespace {
 
-// Sums of so many sites in single precision, of more in double.
-constexpr std::int64_t sites_per_sum = 64;
-// With fewer sites other threads are not worth their start.
-constexpr std::int64_t fewest_sites = 2048;
+// Sums of so many constituents in single precision, of more in double.
+constexpr std::int64_t constituents_per_sum = 64;
+// With fewer constituents other threads are not worth their start.
+constexpr std::int64_t fewest_constituents = 2048;
 
 // A velocity or force of the packed rows as a register holds it, with what the fourth component is in 3D: zero.
 template <int D>
@@ -82,18 +82,18 @@ void store_arrow(float* p, typename Arrow<D>::Type v) {
 template <int D>
 void PackedBodies<D>::pack(const RigidResistance<D>& resistance, const SlicedRows<D>& rows) {
   constexpr std::int64_t stride = SlicedRows<D>::stride;
-  const RigidSites<D>& sites = resistance.sites();
+  const RigidMap<D>& map = resistance.map();
   resistance_ = &resistance;
   share_ = resistance.mobile().share();
-  bodies_ = sites.bodies();
-  offset_.resize(index(sites.sites()));
-  arm_.resize(sites.sites() * stride);
-  parallel_for(sites.sites(), [&](std::int64_t site) {
-    const auto s = index(site);
-    offset_[s] = static_cast<std::int32_t>(rows.place_of_node()[index(sites.rows()[s])] * stride);
+  bodies_ = map.bodies();
+  offset_.resize(index(map.constituents()));
+  arm_.resize(map.constituents() * stride);
+  parallel_for(map.constituents(), [&](std::int64_t member) {
+    const auto s = index(member);
+    offset_[s] = static_cast<std::int32_t>(rows.place_of_node()[index(map.rows()[s])] * stride);
     for (std::int64_t c = 0; c < stride; ++c)
-      arm_.data()[site * stride + c] =
-          c < D ? static_cast<float>(sites.arms()[s].x[index(c) % D]) : 0.0F;
+      arm_.data()[member * stride + c] =
+          c < D ? static_cast<float>(map.arms()[s].x[index(c) % D]) : 0.0F;
   });
   load_.resize(index(bodies_));
   inverse_inertia_.resize(index(bodies_));
@@ -108,8 +108,8 @@ void PackedBodies<D>::pack(const RigidResistance<D>& resistance, const SlicedRow
     // Unknowns in the order V, w, each a combination of scaled ones, which are w and V.
     double scale[freedoms][freedoms] = {};
     for (std::size_t row = 0; row < D; ++row) {
-      scale[row][D + row] = sites.inverse_root_mass(b);
-      for (std::size_t col = 0; col < D; ++col) scale[D + row][col] = sites.turn(b)[row * D + col];
+      scale[row][D + row] = map.inverse_root_mass(b);
+      for (std::size_t col = 0; col < D; ++col) scale[D + row][col] = map.turn(b)[row * D + col];
     }
     for (std::size_t row = 0; row < freedoms; ++row)
       for (std::size_t col = 0; col < freedoms; ++col) {
@@ -138,10 +138,10 @@ void PackedBodies<D>::for_each_body(const Change& change) const {
   parallel_for(
       bodies_,
       [&](std::int64_t body) {
-        const RigidSites<D>& sites = resistance_->sites();
-        change(index(body), sites.begin(index(body)), sites.end(index(body)));
+        const RigidMap<D>& map = resistance_->map();
+        change(index(body), map.begin(index(body)), map.end(index(body)));
       },
-      std::ssize(offset_) < fewest_sites ? none : several);
+      std::ssize(offset_) < fewest_constituents ? none : several);
 }
 
 template <int D>
@@ -151,10 +151,10 @@ void PackedBodies<D>::gather(const float* v) {
   for_each_body([&](std::size_t b, std::int64_t begin, std::int64_t end) {
     auto& load = load_[b];
     load.fill(0.0);
-    for (std::int64_t from = begin; from < end; from += sites_per_sum) {
+    for (std::int64_t from = begin; from < end; from += constituents_per_sum) {
       typename Arrow<D>::Sum sum;
-      for (std::int64_t s = from; s < std::min(end, from + sites_per_sum); ++s)
-        if (alone || share_.owns(std::int64_t{resistance_->sites().rows()[index(s)]}))
+      for (std::int64_t s = from; s < std::min(end, from + constituents_per_sum); ++s)
+        if (alone || share_.owns(std::int64_t{resistance_->map().rows()[index(s)]}))
           sum.add(arrow_at<D>(arm_.data() + s * stride), arrow_at<D>(v + offset_[index(s)]));
       sum.add_to(load.data());
     }
@@ -162,10 +162,10 @@ void PackedBodies<D>::gather(const float* v) {
   if (bodies_ > 0) share_.ranks->sum(std::span(load_.front().data(), load_.size() * freedoms));
 }
 
-/// write(v, u) for the velocity u of each site's rigid motion and its place v.
+/// write(v, u) for the velocity u of each constituent's rigid motion and its place v.
 template <int D>
 template <class Find, class Write>
-void PackedBodies<D>::for_each_site(const Find& find, float* v, const Write& write) const {
+void PackedBodies<D>::for_each_constituent(const Find& find, float* v, const Write& write) const {
   constexpr std::int64_t stride = SlicedRows<D>::stride;
   for_each_body([&](std::size_t b, std::int64_t begin, std::int64_t end) {
     const Motion motion = find(b);
@@ -199,13 +199,13 @@ auto PackedBodies<D>::answer(std::size_t b) const -> Motion {
 template <int D>
 void PackedBodies<D>::project(float* v) {
   gather(v);
-  for_each_site([this](std::size_t b) { return closest(b); }, v, store_arrow<D>);
+  for_each_constituent([this](std::size_t b) { return closest(b); }, v, store_arrow<D>);
 }
 
 template <int D>
 double PackedBodies<D>::solve(const float* r, float* z) {
   gather(r);
-  for_each_site([this](std::size_t b) { return answer(b); }, z, store_arrow<D>);
+  for_each_constituent([this](std::size_t b) { return answer(b); }, z, store_arrow<D>);
   double work = 0.0;
   for (std::size_t b = 0; b < index(bodies_); ++b) {
     const auto motion = answer(b);
@@ -216,16 +216,17 @@ double PackedBodies<D>::solve(const float* r, float* z) {
 
 template <int D>
 void PackedBodies<D>::subtract(float step, float* v) const {
-  for_each_site([this](std::size_t b) { return answer(b); }, v,
-                [step](float* at, auto u) { store_arrow<D>(at, arrow_at<D>(at) - step * u); });
+  for_each_constituent(
+      [this](std::size_t b) { return answer(b); }, v,
+      [step](float* at, auto u) { store_arrow<D>(at, arrow_at<D>(at) - step * u); });
 }
 
 template <int D>
 void PackedBodies<D>::scatter(std::span<const double> y, double scale, float* r) const {
-  for_each_site(
+  for_each_constituent(
       [&](std::size_t b) {
         const RigidMotion<D> motion =
-            resistance_->sites().motion(b, &y[resistance_->linear_node(b) * D], &y[b * D]);
+            resistance_->map().motion(b, &y[resistance_->linear_node(b) * D], &y[b * D]);
         Motion out{};
         for (std::size_t c = 0; c < D; ++c) {
           out[c] = static_cast<float>(motion.velocity.x[c] / scale);
@@ -247,7 +248,7 @@ void PackedBodies<D>::add_to(const float* d, double scale, std::span<double> y) 
       load.torque.x[c] = load_[b][D + c];
     }
     std::array<double, D> linear, angular;
-    resistance_->sites().load(b, load, linear.data(), angular.data());
+    resistance_->map().load(b, load, linear.data(), angular.data());
     for (std::size_t c = 0; c < D; ++c) {
       y[resistance_->linear_node(b) * D + c] += scale * linear[c];
       y[b * D + c] += scale * angular[c];
@@ -262,7 +263,7 @@ void PackedBodies<D>::settle_unused(std::span<const double> b, std::span<double>
     for (std::size_t c = 0; c < D; ++c) missing.x[c] = b[body * D + c] - x[body * D + c];
     for (std::size_t row = 0; row < D; ++row)
       for (std::size_t col = 0; col < D; ++col)
-        x[body * D + row] += resistance_->sites().unused(body)[row * D + col] * missing.x[col];
+        x[body * D + row] += resistance_->map().unused(body)[row * D + col] * missing.x[col];
   }
 }
 

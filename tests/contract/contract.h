@@ -37,8 +37,8 @@ inline std::string name(Geometry geometry) {
                                            : "suspension";
 }
 
-/// Two rigid bodies, rods or others, one of them pushed and turned; with walls also a fixed and a moving obstacle, and under shear the first
-/// one lies across the sliding faces.
+/// Two rigid bodies, rods or others, one of them pushed and turned; with walls also a fixed and a moving obstacle, and under
+/// shear the first one lies across the sliding faces.
 template <int D>
 void add_bodies(odpd::SceneSettings<D>& s, bool walls, bool rods) {
   odpd::BodySettings<D> body;
@@ -174,16 +174,16 @@ inline double true_residual(const odpd::System& system, std::vector<double> b,
 
 // Random vectors orthonormal in the inner product of A: the noise along them, in units of sqrt(2 kT/dt), must be independent
 // standard normal numbers.
-// `sites`: of bodies, whose turns that move nobody have no noise.
+// `map`: of bodies, whose turns that move nobody have no noise.
 template <int D>
 std::vector<std::vector<double>> probes(const odpd::System& system, std::size_t count,
-                                        const odpd::RigidSites<D>& sites) {
+                                        const odpd::RigidMap<D>& map) {
   std::vector<std::vector<double>> found;
   for (std::size_t k = 0; k < count; ++k) {
     std::vector<double> a =
         support::random_numbers(static_cast<std::size_t>(system.size()), 100 + k);
-    for (std::size_t b = 0; b < static_cast<std::size_t>(sites.bodies()); ++b) {
-      const auto& unused = sites.unused(b);
+    for (std::size_t b = 0; b < static_cast<std::size_t>(map.bodies()); ++b) {
+      const auto& unused = map.unused(b);
       const std::vector<double> w(&a[b * D], &a[(b + 1) * D]);
       for (std::size_t i = 0; i < D * D; ++i) a[b * D + i / D] -= unused[i] * w[i % D];
     }
@@ -206,7 +206,7 @@ void expect_noise_covariance(const Instant<D>& instant, const odpd::System& syst
   constexpr std::size_t n = 1250, K = 16;
   constexpr double dt = 0.013, kT = 0.7;
   const odpd::DofMap<D> dofs(instant.scene.particles());
-  const auto a = probes(system, K, instant.rigid().sites());
+  const auto a = probes(system, K, instant.rigid().map());
   std::array<std::array<double, K>, K> mean{};
   std::vector<odpd::Vec<D>> on_edges;
   std::vector<double> xi;

@@ -75,12 +75,12 @@ std::vector<Vec<D>> rigid_velocities(const contract::Instant<D>& instant, std::v
 template <int D>
 double unused_part(const contract::Instant<D>& instant, const std::vector<double>& x,
                    const std::vector<double>& y) {
-  const odpd::RigidSites<D>& sites = instant.rigid().sites();
+  const odpd::RigidMap<D>& map = instant.rigid().map();
   double sum = 0.0;
-  for (std::size_t b = 0; b < static_cast<std::size_t>(sites.bodies()); ++b)
+  for (std::size_t b = 0; b < static_cast<std::size_t>(map.bodies()); ++b)
     for (std::size_t row = 0; row < D; ++row)
       for (std::size_t col = 0; col < D; ++col)
-        sum += x[b * D + row] * sites.unused(b)[row * D + col] * y[b * D + col];
+        sum += x[b * D + row] * map.unused(b)[row * D + col] * y[b * D + col];
   return sum;
 }
 

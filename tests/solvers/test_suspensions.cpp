@@ -89,7 +89,7 @@ TYPED_TEST(Suspensions, TheLargestEigenvalueOfTheLocalPartIsTwo) {
   std::vector<double> blocks, all(n * D);
   a.body_blocks(blocks);
   a.block_diagonal(all);
-  const auto bodies = static_cast<std::size_t>(a.sites().bodies());
+  const auto bodies = static_cast<std::size_t>(a.map().bodies());
   const auto solve = [&](std::vector<double> r) {
     for (std::size_t node = bodies; node < a.linear_node(0); ++node) {
       std::vector<double> m(&all[node * D * D], &all[(node + 1) * D * D]), z(D, 0.0);
@@ -148,7 +148,7 @@ TYPED_TEST(Suspensions, AreTheSameOnAnyNumberOfThreads) {
   constexpr int D = TypeParam::D;
   std::vector<std::vector<double>> answers(3);
   toys::Suspension<D> toy(toys::ball<D>(0.8, 0.4), D == 2 ? 13 : 4, 2.1);
-  EXPECT_GT(toy.resistance.sites().sites(), 2048) << "fewer stay on one thread";
+  EXPECT_GT(toy.resistance.map().constituents(), 2048) << "fewer stay on one thread";
   for (const int threads : {1, 2, 3}) {
     odpd::set_threads(threads, 0);
     toy.rebuild(0.0);

@@ -1,13 +1,13 @@
 #pragma once
 // The resistance operator with rigid bodies, P^T (R + shift) P: R on the mobile particles (free ones and constituents,
-// operator/resistance.h), P the orthonormal map from the unknowns of operator/rigid_sites.h: as P^T P = 1 the norm of a
-// residual is that of forces on particles, an inertia as the shift stays one, and a translation moves V of a body of m sites
-// by m^(1/2). `scale_load` and its like lead from the (F, T) and (V, w) of operator/dof_map.h to these unknowns and back.
-// What moves no site, as the unused component of an angular velocity in 2D, gets a one on the diagonal.
+// operator/resistance.h), P the orthonormal map from the unknowns of operator/rigid_map.h. As P^T P = 1 the norm of a residual
+// is that of forces on particles, an inertia as the shift stays one, and a translation moves y_V of m constituents by m^(1/2).
+// `scale_load` and its like lead from the (F, T) and (V, w) of operator/dof_map.h to these unknowns and back. What moves nobody,
+// as the unused component of an angular velocity in 2D, gets a one on the diagonal.
 #include <vector>
 
 #include "odpd/operator/resistance.h"
-#include "odpd/operator/rigid_sites.h"
+#include "odpd/operator/rigid_map.h"
 
 namespace odpd {
 
@@ -31,12 +31,12 @@ class RigidResistance : public System {
   }
   /// R on the mobile particles.
   const Resistance<D>& mobile() const { return mobile_; }
-  const RigidSites<D>& sites() const { return sites_; }
+  const RigidMap<D>& map() const { return map_; }
   /// The mobile particle belongs to a body.
-  bool is_site(std::size_t row) const { return node_[row] < 0; }
-  /// Of a site.
+  bool is_constituent(std::size_t row) const { return node_[row] < 0; }
+  /// Of a constituent.
   std::size_t body_of(std::size_t row) const { return index(-node_[row] - 1); }
-  /// Node of a free mobile particle; negative for a site.
+  /// Node of a free mobile particle; negative for a constituent.
   std::int32_t node_of(std::size_t row) const { return node_[row]; }
   /// Node of V of a body; that of its w is its number.
   std::size_t linear_node(std::size_t body) const { return dofs_->body_node(body); }
@@ -73,15 +73,15 @@ class RigidResistance : public System {
   void from_particles(std::span<const double> f, std::span<double> y) const;
   template <class Change>
   void for_each_body(std::span<double> x, const Change& change) const;
-  /// X(a) S of a site: what y_w adds to its velocity.
-  typename Resistance<D>::Block lever(std::size_t b, std::size_t site) const;
+  /// X(a) S of a constituent: what y_w adds to its velocity.
+  typename Resistance<D>::Block lever(std::size_t b, std::size_t member) const;
 
   Resistance<D> mobile_;
   const DofMap<D>* dofs_ = nullptr;
-  RigidSites<D> sites_;
-  std::vector<std::int32_t> node_;     // per mobile particle: its node, or -(body + 1)
-  std::vector<std::int32_t> site_of_;  // per mobile particle of a body: its number in sites_
-  std::vector<double> root_mass_;      // per body
+  RigidMap<D> map_;
+  std::vector<std::int32_t> node_;    // per mobile particle: its node, or -(body + 1)
+  std::vector<std::int32_t> number_;  // per mobile particle of a body: its number in map_
+  std::vector<double> root_mass_;     // per body
   std::vector<std::vector<double>> null_motions_;
   mutable std::vector<double> velocity_, force_;  // of the mobile particles, in apply
   mutable BlockCsr matrix_;

@@ -7,10 +7,10 @@
 // gradient, so that they are added up before the cell sees them. Friction with particles of known velocity and the shift act
 // at the particle's own position.
 //
-// A rigid body does not strain, which the edges at its sites do not say. So each site adds the dissipation of a stiffer fluid
-// there, which a rotation does not feel:
+// A rigid body does not strain, which the edges at its constituents do not say. So each constituent adds the dissipation of a
+// stiffer fluid there, which a rotation does not feel:
 //
-//   c tau (2 E : E + (tr E)^2),   E the strain rate at the site,   tau = mean of sum zeta r^2 / (2 D (D + 2)) per free particle
+//   c tau (2 E : E + (tr E)^2),   E the strain rate there,   tau = mean of sum zeta r^2 / (2 D (D + 2)) per free particle
 //
 // with c twice the body's radius in units of the grid's spacing.
 #include "odpd/core/index.h"

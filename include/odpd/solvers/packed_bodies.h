@@ -4,7 +4,7 @@
 //
 //   Pi = P P^T,   Pi A Pi x = Pi b,   local part of the preconditioner  P D_B^-1 P^T,   D_B = the body's block of P^T A P
 //
-// P of operator/rigid_sites.h, orthonormal. D_B is exact, 2D x 2D: edges inside a body are none, so each edge touches two
+// P of operator/rigid_map.h, orthonormal. D_B is exact, 2D x 2D: edges inside a body are none, so each edge touches two
 // blocks, and the eigenvalues of D^-1 A stay below 2 as without bodies.
 #include <array>
 #include <cstdint>
@@ -23,11 +23,11 @@ class PackedBodies {
   void pack(const RigidResistance<D>& resistance, const SlicedRows<D>& rows);
   bool empty() const { return bodies_ == 0; }
 
-  // Node vectors of the packed rows. Only the places of sites are read and written.
+  // Node vectors of the packed rows. Only the places of constituents are read and written.
 
   /// v := Pi v.
   void project(float* v);
-  /// z := P D_B^-1 P^T r; returns r . z of the sites.
+  /// z := P D_B^-1 P^T r; returns r . z of the constituents.
   double solve(const float* r, float* z);
   /// Keeps P^T v for `subtract`.
   void gather(const float* v);
@@ -39,7 +39,7 @@ class PackedBodies {
   /// y += scale P^T d.
   void add_to(const float* d, double scale, std::span<double> y);
 
-  /// The answer where unknowns move no site: x := b there.
+  /// The answer where unknowns move no constituent: x := b there.
   void settle_unused(std::span<const double> b, std::span<double> x) const;
 
   std::int64_t bytes() const;
@@ -51,7 +51,7 @@ class PackedBodies {
   template <class Change>
   void for_each_body(const Change& change) const;
   template <class Find, class Write>
-  void for_each_site(const Find& find, float* v, const Write& write) const;
+  void for_each_constituent(const Find& find, float* v, const Write& write) const;
   /// P^T P times this is what was gathered.
   Motion closest(std::size_t b) const;
   /// D_B^-1 of what was gathered.
@@ -60,8 +60,8 @@ class PackedBodies {
   const RigidResistance<D>* resistance_ = nullptr;
   std::int64_t bodies_ = 0;
   Share share_;                       // rows
-  std::vector<std::int32_t> offset_;  // per site: where its place begins in a node vector
-  FloatArray arm_;                    // per site, as a node vector
+  std::vector<std::int32_t> offset_;  // per constituent: where its place begins in a node vector
+  FloatArray arm_;                    // per constituent, as a node vector
   std::vector<std::array<float, 1 + D * D>> inverse_inertia_;          // 1/m, and S^2
   std::vector<std::array<float, freedoms * freedoms>> inverse_block_;  // of V, w from F, T
   std::vector<std::array<double, freedoms>> load_;                     // F, T: what was gathered

@@ -1,12 +1,12 @@
 #pragma once
-// The sites (constituents) of the rigid bodies of unknown motion, and unknowns y = (y_w, y_V) of a body that make the map to
-// its sites orthonormal:
+// The constituents of the rigid bodies of unknown motion, and unknowns y = (y_w, y_V) of a body in which its map to their
+// velocities is orthonormal:
 //
 //   v_k = V + w x a_k,   V = m^(-1/2) y_V,   w = S y_w,   S = (sum_k X(a_k)^T X(a_k))^(-1/2),   X(a) w = w x a
 //
-// with m sites at arms a_k about their mean. So |y|^2 = sum_k |v_k|^2, whatever the body's size and the unit of length, and
-// the load of forces f_k is y_V = m^(-1/2) F, y_w = S T with F their sum and T their torque. Sites on a line (3D) do not turn
-// about it: S is a pseudo-inverse, and the rotation about the line has no site to move.
+// with m constituents at arms a_k about their mean. So |y|^2 = sum_k |v_k|^2, whatever the body's size and the unit of length.
+// The load of forces f_k is y_V = m^(-1/2) F, y_w = S T, with F their sum and T their torque. Constituents on a line (3D) do not
+// turn about it: S is a pseudo-inverse, and what y_w has along the line moves nobody.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -19,7 +19,7 @@
 namespace odpd {
 
 template <int D>
-class RigidSites {
+class RigidMap {
  public:
   using Block = std::array<double, index(D* D)>;  ///< row-major
 
@@ -27,11 +27,11 @@ class RigidSites {
   void rebuild(const DofMap<D>& dofs, std::span<const Vec<D>> arms);
 
   std::int64_t bodies() const { return std::ssize(scale_); }
-  std::int64_t sites() const { return std::ssize(row_); }
+  std::int64_t constituents() const { return std::ssize(row_); }
   /// Of all bodies one after the other: numbers among the mobile particles (DofMap::mobile_of), and arms.
   std::span<const std::int32_t> rows() const { return row_; }
   std::span<const Vec<D>> arms() const { return arm_; }
-  /// Where the sites of body b begin, and where those of the last one end.
+  /// Where the constituents of body b begin, and where those of the last one end.
   std::int64_t begin(std::size_t b) const { return begin_[b]; }
   std::int64_t end(std::size_t b) const { return begin_[b + 1]; }
 
@@ -45,7 +45,7 @@ class RigidSites {
 
   double inverse_root_mass(std::size_t b) const { return scale_[b].inverse_root_mass; }
   const Block& turn(std::size_t b) const { return scale_[b].turn; }
-  /// Projector on angular unknowns that move no site: the second one in 2D, the turn about a line of sites in 3D.
+  /// Projector on angular unknowns that move nobody: the second one in 2D, the turn about the line of a rod in 3D.
   const Block& unused(std::size_t b) const { return scale_[b].unused; }
 
  private:

@@ -1,4 +1,4 @@
-#include "odpd/operator/rigid_sites.h"
+#include "odpd/operator/rigid_map.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -31,7 +31,7 @@ Vec<D> from(const double* x) {
 }  // namespace
 
 template <int D>
-void RigidSites<D>::rebuild(const DofMap<D>& dofs, std::span<const Vec<D>> arms) {
+void RigidMap<D>::rebuild(const DofMap<D>& dofs, std::span<const Vec<D>> arms) {
   const auto bodies = index(dofs.bodies());
   begin_.assign(1, 0);
   for (std::size_t b = 0; b < bodies; ++b)
@@ -41,17 +41,17 @@ void RigidSites<D>::rebuild(const DofMap<D>& dofs, std::span<const Vec<D>> arms)
   scale_.resize(bodies);
   parallel_for(dofs.bodies(), [&](std::int64_t body) {
     const auto b = index(body);
-    auto site = index(begin_[b]);
+    auto member = index(begin_[b]);
     for (const std::int32_t particle : dofs.constituents(b)) {
-      row_[site] = dofs.mobile_of(index(particle));
-      arm_[site++] = arms[index(particle)];
+      row_[member] = dofs.mobile_of(index(particle));
+      arm_[member++] = arms[index(particle)];
     }
     scale_[b] = scale_of(std::span(arm_).subspan(index(begin_[b]), dofs.constituents(b).size()));
   });
 }
 
 template <int D>
-auto RigidSites<D>::scale_of(std::span<const Vec<D>> arms) -> Scale {
+auto RigidMap<D>::scale_of(std::span<const Vec<D>> arms) -> Scale {
   const std::array<Vec<D>, D> inertia = moment_of_inertia<D>(arms);
   Square<D> moments;
   for (int row = 0; row < D; ++row)
@@ -78,15 +78,15 @@ auto RigidSites<D>::scale_of(std::span<const Vec<D>> arms) -> Scale {
 }
 
 template <int D>
-RigidMotion<D> RigidSites<D>::motion(std::size_t b, const double* y_linear,
-                                     const double* y_angular) const {
+RigidMotion<D> RigidMap<D>::motion(std::size_t b, const double* y_linear,
+                                   const double* y_angular) const {
   return {scale_[b].inverse_root_mass * from<D>(y_linear),
           times<D>(scale_[b].turn, from<D>(y_angular))};
 }
 
 template <int D>
-void RigidSites<D>::unknowns(std::size_t b, const RigidMotion<D>& motion, double* y_linear,
-                             double* y_angular) const {
+void RigidMap<D>::unknowns(std::size_t b, const RigidMotion<D>& motion, double* y_linear,
+                           double* y_angular) const {
   const Vec<D> angular = times<D>(scale_[b].unturn, motion.angular);
   for (std::size_t c = 0; c < D; ++c) {
     y_linear[c] = motion.velocity.x[c] / scale_[b].inverse_root_mass;
@@ -95,8 +95,8 @@ void RigidSites<D>::unknowns(std::size_t b, const RigidMotion<D>& motion, double
 }
 
 template <int D>
-void RigidSites<D>::load(std::size_t b, const RigidLoad<D>& load, double* y_linear,
-                         double* y_angular) const {
+void RigidMap<D>::load(std::size_t b, const RigidLoad<D>& load, double* y_linear,
+                       double* y_angular) const {
   const Vec<D> angular = times<D>(scale_[b].turn, load.torque);
   for (std::size_t c = 0; c < D; ++c) {
     y_linear[c] = scale_[b].inverse_root_mass * load.force.x[c];
@@ -104,7 +104,7 @@ void RigidSites<D>::load(std::size_t b, const RigidLoad<D>& load, double* y_line
   }
 }
 
-template class RigidSites<2>;
-template class RigidSites<3>;
+template class RigidMap<2>;
+template class RigidMap<3>;
 
 }  // namespace odpd
