@@ -157,10 +157,12 @@ void RigidResistance<D>::apply(std::span<const double> x, std::span<double> y) c
   to_particles(x, velocity_);
   mobile_.apply(velocity_, force_);
   from_particles(force_, y);
-  for (std::size_t b = 0; b < index(map_.bodies()); ++b)
+  parallel_for(map_.bodies(), [&](std::int64_t body) {
+    const auto b = index(body);
     for (std::size_t row = 0; row < D; ++row)
       for (std::size_t col = 0; col < D; ++col)
         y[b * D + row] += map_.unused(b)[row * D + col] * x[b * D + col];
+  });
 }
 
 template <int D>

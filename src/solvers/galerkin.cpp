@@ -13,8 +13,9 @@ namespace {
 
 // Of a body beside the fluid, per radius in units of the grid's spacing. A body smaller than a cell strains little on the grid
 // anyway, and more would only be in the way of the fluid around; one of several cells should be as stiff as the smoother
-// bears. Between one and three iterations are the same within one (docs/performance.md).
+// bears. From 1.5 to 2.5 iterations change by one at most.
 constexpr double stiffness_per_radius = 2.0;
+constexpr std::int64_t fewest_free = 64;  // that stand for the fluid
 
 template <int D>
 using Triangle = std::array<float, index(GridShape<D>::triangle)>;
@@ -191,10 +192,12 @@ template <int D>
 FrictionSpread friction_spread(const Resistance<D>& resistance, const RigidResistance<D>* rigid) {
   const Share share = resistance.share();
   std::array<double, 5> sums{};
-  auto& [moment, total, ties, tied, counted] = sums;
-  const bool of_free = rigid != nullptr && rigid->map().constituents() < resistance.nodes();
-  const std::int64_t looked_at =
-      resistance.nodes() - (of_free ? rigid->map().constituents() : std::int64_t{0});
+  auto& [moment, total, ties, tied, logarithms] = sums;
+  // Constituents have no links inside their body; where there are few others they must do.
+  const std::int64_t free =
+      resistance.nodes() - (rigid == nullptr ? 0 : rigid->map().constituents());
+  const bool of_free = rigid != nullptr && free >= fewest_free;
+  const std::int64_t looked_at = of_free ? free : resistance.nodes();
   // Some hundred particles tell it well enough.
   const std::int64_t step = std::max<std::int64_t>(1, looked_at / 256);
   std::int64_t until_next = 0;
@@ -202,10 +205,9 @@ FrictionSpread friction_spread(const Resistance<D>& resistance, const RigidResis
     if ((of_free && rigid->is_constituent(index(n))) || until_next-- > 0) continue;
     until_next = step - 1;
     if (!share.owns(n)) continue;
-    counted += 1.0;
     const auto node = index(n);
     const Vec<D> own = resistance.position(node);
-    double sum = 0.0, squares = 0.0;
+    double sum = 0.0, squares = 0.0, own_moment = 0.0;
     for (const auto& link : resistance.links(node)) {
       const auto other = index(link.node);
       const Vec<D> d = resistance.box().separation(own, resistance.position(other));
@@ -215,15 +217,17 @@ FrictionSpread friction_spread(const Resistance<D>& resistance, const RigidResis
       sum += zeta;
       squares += zeta * zeta;
       moment += zeta * dot(d, d);
+      own_moment += zeta * dot(d, d);
     }
     total += sum;
     if (!(squares > 0.0)) continue;
     ties += sum * sum / squares;
+    logarithms += std::log(own_moment);
     tied += 1.0;
   }
   share.ranks->sum(std::span(sums));
   if (!(total > 0.0)) return {};
-  return {std::sqrt(moment / total), ties / tied, moment / counted};
+  return {std::sqrt(moment / total), ties / tied, std::exp(logarithms / tied)};
 }
 
 template <int D>

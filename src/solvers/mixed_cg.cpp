@@ -55,7 +55,11 @@ void MixedCg<D>::set_up(const System& system) {
   residual_.resize(index(system.size()));
   sums_.resize(index(2 * blocks()));
   invert_diagonal();
-  if (rigid_ != nullptr) bodies_.pack(*rigid_, rows_);
+  if (rigid_ != nullptr) {
+    bodies_.pack(*rigid_, rows_);
+  } else {
+    bodies_.clear();
+  }
   if (with_grid_) grid_.set_up(*resistance_, rows_, rigid_);
   local_ = grid_.local();
   t_.resize(with_grid_ && local_.size() > 2 ? rows_.vector_size() : 0);

@@ -5,8 +5,8 @@
 //
 // Where the recursive residual has fallen far below that of the last double one, x and r are brought up to date in double
 // and the iteration goes on with its search direction (reliable updates; Clark et al. 2010). On a held system Pi is
-// applied to p and A p. With rigid bodies d, r, p are velocities and forces of particles, projected on those in which bodies
-// are rigid (solvers/packed_bodies.h). Single precision holds out up to condition numbers of some 1e7; beyond, the attempt
+// applied to p and A p. With rigid bodies d, r, p are velocities and forces of particles, and another projection keeps bodies
+// rigid (solvers/packed_bodies.h). Single precision holds out up to condition numbers of some 1e7; beyond, the attempt
 // gives up.
 #include <string>
 #include <vector>

@@ -83,8 +83,8 @@ struct MultilevelKernels {
                      std::int64_t first, std::int64_t last);
   /// Adds to the element of the node's cell, with the gradients of N at the node,
   /// half of sum_links (d . grad N_n) (d . grad N_m) W, d = r - r_other in units of the spacing, and N_n N_m `anchor`
-  /// (a triangle; null: none). `link`: per link its edge and its other node. `inside`, times `stiffness`: more of these sums of d_a
-  /// d_b W, a triangle of triangles (null: none).
+  /// (a triangle; null: none). `link`: per link its edge and its other node. `inside`, times `stiffness`: more of the
+  /// sums of d_a d_b W, a triangle of triangles (null: none).
   void (*add_node[2])(const ElementView&, const EdgeView&, std::int64_t node,
                       const std::int32_t* link, std::int64_t links, const float* anchor,
                       const float* inside, float stiffness);

@@ -1,8 +1,9 @@
 #include "odpd/solvers/packed_bodies.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <atomic>
-#include <limits>
+#include <cmath>
+#include <numeric>
 
 #include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
@@ -14,8 +15,7 @@ namespace {
 
 // Sums of so many constituents in single precision, of more in double.
 constexpr std::int64_t constituents_per_sum = 64;
-// With fewer constituents other threads are not worth their start.
-constexpr std::int64_t fewest_constituents = 2048;
+constexpr std::int64_t constituents_per_turn = 1024;
 
 // A velocity or force of the packed rows as a register holds it, with what the fourth component is in 3D: zero.
 template <int D>
@@ -67,6 +67,24 @@ struct Arrow<3> {
   };
 };
 
+// Inverse, or pseudo-inverse, of a positive semidefinite block.
+void invert(std::span<double> block) {
+  constexpr double singular = 1e-10;  // of the largest eigenvalue
+  const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(block.size())));
+  std::vector<double> inverse(block.begin(), block.end());
+  if (invert_definite(inverse, static_cast<int>(n))) {
+    std::copy(inverse.begin(), inverse.end(), block.begin());
+    return;
+  }
+  Eigen::Map<Eigen::MatrixXd> m(block.data(), n, n);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(m);
+  m.setZero();
+  for (Eigen::Index k = 0; k < n; ++k)
+    if (parts.eigenvalues()(k) > singular * parts.eigenvalues()(n - 1))
+      m += parts.eigenvectors().col(k) * parts.eigenvectors().col(k).transpose() /
+           parts.eigenvalues()(k);
+}
+
 template <int D>
 auto arrow_at(const float* p) {
   return *reinterpret_cast<const typename Arrow<D>::Type*>(p);
@@ -96,15 +114,15 @@ void PackedBodies<D>::pack(const RigidResistance<D>& resistance, const SlicedRow
           c < D ? static_cast<float>(map.arms()[s].x[index(c) % D]) : 0.0F;
   });
   load_.resize(index(bodies_));
+  work_.resize(index(bodies_));
   inverse_inertia_.resize(index(bodies_));
   inverse_block_.resize(index(bodies_));
   std::vector<double> blocks;
   resistance.body_blocks(blocks);
-  std::atomic<std::int64_t> first_bad{bodies_};
   parallel_for(bodies_, [&](std::int64_t body) {
     const auto b = index(body);
     const auto block = std::span(blocks).subspan(b * freedoms * freedoms, freedoms * freedoms);
-    if (!invert_definite(block, freedoms)) return lower(first_bad, body);
+    invert(block);
     // Unknowns in the order V, w, each a combination of scaled ones, which are w and V.
     double scale[freedoms][freedoms] = {};
     for (std::size_t row = 0; row < D; ++row) {
@@ -125,23 +143,19 @@ void PackedBodies<D>::pack(const RigidResistance<D>& resistance, const SlicedRow
         if (row == 0 && col == 0) inverse_inertia_[b][0] = static_cast<float>(inertia);
       }
   });
-  share_.ranks->together([&] {
-    if (first_bad < bodies_)
-      reject_block(static_cast<std::int64_t>(resistance.linear_node(index(first_bad.load()))));
-  });
 }
 
+/// Bodies that begin in the same stretch of constituents share a thread's turn: some may be much larger than others.
 template <int D>
 template <class Change>
 void PackedBodies<D>::for_each_body(const Change& change) const {
-  const std::int64_t several = 2, none = std::numeric_limits<std::int64_t>::max();
-  parallel_for(
-      bodies_,
-      [&](std::int64_t body) {
-        const RigidMap<D>& map = resistance_->map();
-        change(index(body), map.begin(index(body)), map.end(index(body)));
-      },
-      std::ssize(offset_) < fewest_constituents ? none : several);
+  if (bodies_ == 0) return;
+  const RigidMap<D>& map = resistance_->map();
+  const auto bodies_of = [&](std::int64_t begin, std::int64_t end) {
+    for (std::size_t b = map.first_from(begin); b < index(bodies_) && map.begin(b) < end; ++b)
+      change(b, map.begin(b), map.end(b));
+  };
+  parallel_ranges(std::ssize(offset_), constituents_per_turn, bodies_of);
 }
 
 template <int D>
@@ -162,7 +176,6 @@ void PackedBodies<D>::gather(const float* v) {
   if (bodies_ > 0) share_.ranks->sum(std::span(load_.front().data(), load_.size() * freedoms));
 }
 
-/// write(v, u) for the velocity u of each constituent's rigid motion and its place v.
 template <int D>
 template <class Find, class Write>
 void PackedBodies<D>::for_each_constituent(const Find& find, float* v, const Write& write) const {
@@ -205,13 +218,16 @@ void PackedBodies<D>::project(float* v) {
 template <int D>
 double PackedBodies<D>::solve(const float* r, float* z) {
   gather(r);
-  for_each_constituent([this](std::size_t b) { return answer(b); }, z, store_arrow<D>);
-  double work = 0.0;
-  for (std::size_t b = 0; b < index(bodies_); ++b) {
-    const auto motion = answer(b);
-    for (std::size_t k = 0; k < freedoms; ++k) work += load_[b][k] * static_cast<double>(motion[k]);
-  }
-  return work;
+  for_each_constituent(
+      [this](std::size_t b) {
+        const Motion motion = answer(b);
+        work_[b] = 0.0;
+        for (std::size_t k = 0; k < freedoms; ++k)
+          work_[b] += load_[b][k] * static_cast<double>(motion[k]);
+        return motion;
+      },
+      z, store_arrow<D>);
+  return std::accumulate(work_.begin(), work_.begin() + bodies_, 0.0);
 }
 
 template <int D>
@@ -271,8 +287,9 @@ template <int D>
 std::int64_t PackedBodies<D>::bytes() const {
   return arm_.size() * static_cast<std::int64_t>(sizeof(float)) +
          static_cast<std::int64_t>(offset_.size() * sizeof(std::int32_t) +
-                                   load_.size() * (sizeof(load_[0]) + sizeof(inverse_inertia_[0]) +
-                                                   sizeof(inverse_block_[0])));
+                                   load_.size() *
+                                       (sizeof(double) + sizeof(load_[0]) +
+                                        sizeof(inverse_inertia_[0]) + sizeof(inverse_block_[0])));
 }
 
 template class PackedBodies<2>;

@@ -1,5 +1,5 @@
-// Preconditioned conjugate gradients. On a Resistance, D velocities per particle, the work is done in single precision
-// (mixed_cg.cpp); on any other System, whatever its block, and where single precision does not do, in double, on
+// Preconditioned conjugate gradients. On a Resistance or RigidResistance, velocities of particles, the work is done in single
+// precision (mixed_cg.cpp); on any other System, whatever its block, and where single precision does not do, in double, on
 // System::apply. On a projected system everything lives in the range of Pi: the operator is Pi A Pi, the preconditioner
 // Pi M^-1 Pi.
 #include <algorithm>

@@ -68,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(
                                      RankedSolve{"multilevel", "pcg", "multilevel", false},
                                      RankedSolve{"held", "pcg", "multilevel", true}),
                      testing::Values(Geometry::walls, Geometry::periodic, Geometry::sheared,
-                                     Geometry::obstacles),
+                                     Geometry::obstacles, Geometry::suspension, Geometry::rods),
                      testing::Values(2, 3)),
     [](const auto& test) {
       return std::string(std::get<0>(test.param).label) + "_" +

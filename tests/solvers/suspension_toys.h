@@ -38,10 +38,10 @@ std::vector<odpd::Vec<D>> rod(double length, double spacing) {
 
 template <int D>
 struct Suspension {
-  /// side^D bodies, `apart` from centre to centre, turned at random; fluid up to 0.3 from their points. `slid`: images along the last
+  /// side^D bodies, `apart` from centre to centre, turned at random; fluid up to `gap` from their points. `slid`: images along the last
   /// direction lie so much of the box aside.
   Suspension(const std::vector<odpd::Vec<D>>& shape, int side, double apart, double shift = 0.0,
-             std::uint64_t seed = 3, bool hold = false, double slid = 0.0)
+             std::uint64_t seed = 3, bool hold = false, double slid = 0.0, double gap = 0.3)
       : fluid(apart * side, true), resistance(fluid.box, hold) {
     if (slid > 0.0) {
       fluid.box.shear =
@@ -67,7 +67,7 @@ struct Suspension {
     const auto wanted = static_cast<std::size_t>(8.0 * std::pow(apart * side, D));
     for (const auto& r : support::random_points<D>({}, fluid.box.size, wanted, seed + 1))
       if (std::none_of(points.begin(), points.end(), [&](const odpd::Vec<D>& point) {
-            return norm(fluid.box.separation(r, point)) < 0.3;
+            return norm(fluid.box.separation(r, point)) < gap;
           }))
         fluid.particles.add(r, 0);
     fluid.connect(odpd::DpdModel<D>(1, {odpd::DpdParameters{}}));

@@ -121,6 +121,71 @@ TYPED_TEST(Suspensions, TheLargestEigenvalueOfTheLocalPartIsTwo) {
   EXPECT_GT(largest, 1.5);
 }
 
+// Hardly a particle beside the bodies, or none: the grid's spacing and stiffness come from constituents.
+TYPED_TEST(Suspensions, OfBodiesAlone) {
+  constexpr int D = TypeParam::D;
+  const toys::Suspension<D> toy(toys::ball<D>(0.9, 0.45), D == 2 ? 12 : 5, 1.35, 0.0, 3, false, 0.0,
+                                0.8);
+  EXPECT_LE(toy.resistance.mobile().nodes() - toy.resistance.map().constituents(), 8);
+  EXPECT_LE(iterations_of(toy), 24);
+}
+
+// Two edges meet each disk or ball, so that not all of its block is definite: it does not move where nothing resists.
+TYPED_TEST(Suspensions, OfBodiesThatFewEdgesMeet) {
+  constexpr int D = TypeParam::D;
+  support::Fluid<D> fluid(4.0, true);
+  for (const double x : {1.0, 3.0}) {
+    odpd::RigidBody<D> body;
+    body.frame = toys::ball<D>(0.5, 0.5);
+    body.pose.centre = support::uniform_vec<D>(2.0);
+    body.pose.centre[0] = x;
+    fluid.particles.add_body(body, fluid.box, 0);
+  }
+  fluid.connect(odpd::DpdModel<D>(1, {odpd::DpdParameters{.cutoff = 1.05}}));
+  ASSERT_EQ(fluid.network.size(), 2);
+  const odpd::DofMap<D> dofs(fluid.particles);
+  std::vector<odpd::Vec<D>> arms;
+  for (const auto& body : fluid.particles.bodies)
+    arms.insert(arms.end(), body.frame.begin(), body.frame.end());
+  odpd::RigidResistance<D> resistance(fluid.box);
+  resistance.rebuild(fluid.network, dofs, fluid.particles, fluid.particles.position, arms, 0.0);
+  // Pair forces along the edges, as noise and repulsion are.
+  std::vector<odpd::Vec<D>> force(arms.size());
+  for (std::size_t k = 0; k < 2; ++k) {
+    const odpd::Vec<D> f = (k == 0 ? 1.0 : -0.4) * fluid.network.e[k];
+    force[static_cast<std::size_t>(fluid.network.i[k])] += f;
+    force[static_cast<std::size_t>(fluid.network.j[k])] -= f;
+  }
+  std::vector<double> load, x;
+  dofs.gather(arms, force, load);
+  resistance.scale_load(load);
+  x.assign(load.size(), 0.0);
+  const auto solver = odpd::make_solver({.name = "pcg", .tolerance = 1e-6});
+  solver->bind(resistance);
+  const SolveReport report = solver->solve(load, x);
+  EXPECT_TRUE(report.converged) << report.failure;
+  EXPECT_GT(support::norm(x), 0.01);
+}
+
+// Bound to a suspension, to the particles alone and back: nothing of the bodies is left over.
+TYPED_TEST(Suspensions, LeaveNothingBehindInTheSolver) {
+  constexpr int D = TypeParam::D;
+  const toys::Suspension<D> toy(toys::ball<D>(0.8, 0.4), 3, 2.1);
+  const auto solver = odpd::make_solver({.name = "pcg", .preconditioner = "block-jacobi"});
+  const auto answer = [](odpd::Solver& with, const odpd::System& system) {
+    const auto n = static_cast<std::size_t>(system.size());
+    std::vector<double> x(n, 0.0);
+    with.bind(system);
+    EXPECT_TRUE(with.solve(support::random_numbers(n, 11), x).converged);
+    return x;
+  };
+  const toys::RandomFluid<D> fluid(300);
+  const std::vector<double> bodies = answer(*solver, toy.resistance);
+  const auto fresh = odpd::make_solver({.name = "pcg", .preconditioner = "block-jacobi"});
+  EXPECT_EQ(answer(*solver, fluid.resistance), answer(*fresh, fluid.resistance));
+  EXPECT_EQ(answer(*solver, toy.resistance), bodies);
+}
+
 // Velocities of particles, so of the unknowns, agree to 1e-10.
 TYPED_TEST(Suspensions, HaveTheAnswerOfAFactorisation) {
   constexpr int D = TypeParam::D;

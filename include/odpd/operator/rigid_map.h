@@ -7,6 +7,7 @@
 // with m constituents at arms a_k about their mean. So |y|^2 = sum_k |v_k|^2, whatever the body's size and the unit of length.
 // The load of forces f_k is y_V = m^(-1/2) F, y_w = S T, with F their sum and T their torque. Constituents on a line (3D) do not
 // turn about it: S is a pseudo-inverse, and what y_w has along the line moves nobody.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -34,6 +35,10 @@ class RigidMap {
   /// Where the constituents of body b begin, and where those of the last one end.
   std::int64_t begin(std::size_t b) const { return begin_[b]; }
   std::int64_t end(std::size_t b) const { return begin_[b + 1]; }
+  /// The first body whose constituents begin at this one or later.
+  std::size_t first_from(std::int64_t constituent) const {
+    return index(std::lower_bound(begin_.begin(), begin_.end(), constituent) - begin_.begin());
+  }
 
   /// V and w of unknowns; of a body's two nodes.
   RigidMotion<D> motion(std::size_t b, const double* y_linear, const double* y_angular) const;

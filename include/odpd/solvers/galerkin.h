@@ -10,7 +10,7 @@
 // A rigid body does not strain, which the edges at its constituents do not say. So each constituent adds the dissipation of a
 // stiffer fluid there, which a rotation does not feel:
 //
-//   c tau (2 E : E + (tr E)^2),   E the strain rate there,   tau = mean of sum zeta r^2 / (2 D (D + 2)) per free particle
+//   c tau (2 E : E + (tr E)^2),   E the strain rate there,   tau = sum zeta r^2 / (2 D (D + 2)) of a free particle
 //
 // with c twice the body's radius in units of the grid's spacing.
 #include "odpd/core/index.h"
@@ -34,13 +34,14 @@ Vec<D> grid_position(const Resistance<D>& resistance, std::size_t node);
 template <int D>
 GridPosition<D> locate(const GridShape<D>& shape, const double* position);
 
-/// How friction is spread, by the edges of a sample of the free particles, or of all where none is free, with zeta the trace
+/// How friction is spread, by the edges of a sample of the free particles, or of all where few are free, with zeta the trace
 /// of an edge's friction.
 struct FrictionSpread {
   double range = 0.0;  ///< sqrt(sum zeta r^2 / sum zeta) (length); 0 without any
   /// (sum zeta)^2 / sum zeta^2 over the edges of a particle, on average: neighbours that share in its friction; 0 without any
   double ties = 0.0;
-  double moment = 0.0;  ///< mean of sum zeta r^2 of a particle (force length time)
+  /// Geometric mean over particles of sum zeta r^2 (force length time), so that a few stiff bonds do not count for much.
+  double moment = 0.0;
 };
 // `rigid`: the operator around `resistance` where there are rigid bodies, else null.
 template <int D>

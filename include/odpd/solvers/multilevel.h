@@ -4,12 +4,13 @@
 //   z = q(D^-1 A) D^-1 r + P V P^T r,   q(L) = 2 (2.15 - L), or, where few neighbours share a particle's friction,
 //                                       q(L) = 2 (1 - T_4(x)/T_4(x_0))/L,  x = (2.1 - 2 L)/1.9, x_0 = 2.1/1.9
 //
-// D the block diagonal, P multilinear interpolation from a regular grid of about 1.7 cutoffs to the particles, V a
+// D the block diagonal (of a rigid body all of its unknowns), P multilinear interpolation from a regular grid of about 1.7 cutoffs to the particles, V a
 // multigrid cycle for the Galerkin operator of the grid. The eigenvalues of D^-1 A are at most 2, since
 //
 //   2 D - A = sum_edges g g^T on v_i + v_j (and what holds a node) >= 0,
 //
-// so the local part, two or four steps of block-Jacobi, is definite. (T_4: Chebyshev's polynomial, small for 0.1 < L < 2.)
+// so the local part, two or four steps of block-Jacobi, is definite. (T_4: Chebyshev's polynomial, small for 0.1 < L < 2.) With
+// rigid bodies the caller projects what P gives on the velocities in which these are rigid.
 // It serves clusters of strongly bound particles that move together against weak ties: D alone takes them to be as stiff as
 // the ties inside. The grid stands still while the particles move, so its operator ages slowly: it is kept until convergence
 // has slowed down (`note_rate`).

@@ -19,8 +19,10 @@ namespace odpd {
 template <int D>
 class PackedBodies {
  public:
-  /// Throws SolverError for a body whose block is singular.
+  /// A block may be singular, where few edges meet a body: its pseudo-inverse then leaves out what they do not resist.
   void pack(const RigidResistance<D>& resistance, const SlicedRows<D>& rows);
+  /// No bodies, until the next pack.
+  void clear() { bodies_ = 0; }
   bool empty() const { return bodies_ == 0; }
 
   // Node vectors of the packed rows. Only the places of constituents are read and written.
@@ -50,6 +52,7 @@ class PackedBodies {
 
   template <class Change>
   void for_each_body(const Change& change) const;
+  /// write(v, u) for the velocity u of each constituent of a body, in its motion `find`(body), and its place v.
   template <class Find, class Write>
   void for_each_constituent(const Find& find, float* v, const Write& write) const;
   /// P^T P times this is what was gathered.
@@ -65,6 +68,7 @@ class PackedBodies {
   std::vector<std::array<float, 1 + D * D>> inverse_inertia_;          // 1/m, and S^2
   std::vector<std::array<float, freedoms * freedoms>> inverse_block_;  // of V, w from F, T
   std::vector<std::array<double, freedoms>> load_;                     // F, T: what was gathered
+  std::vector<double> work_;                                           // r . z of a body
 };
 
 }  // namespace odpd
