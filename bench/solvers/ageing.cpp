@@ -19,13 +19,13 @@ constexpr double tolerance = 1e-7;
 
 template <int D>
 void age(const FluidSpec& spec, Results& results) {
-  std::vector<odpd::Vec<D>> positions;
+  Start<D> start;
   for (const Backend& backend : own_backends()) {
     std::vector<std::string> row{std::to_string(D), spec.geometry(), std::to_string(spec.particles),
                                  backend.name};
     if (results.has(row)) continue;
-    if (positions.empty()) positions = equilibrated<D>(spec);
-    const auto scene = scene_at<D>(spec, positions);
+    if (start.empty()) start = equilibrated<D>(spec);
+    const auto scene = scene_at<D>(spec, start);
     odpd::SolverOptions options = backend.options;
     options.tolerance = tolerance;
     odpd::Dynamics<D> dynamics(scene->box(), scene->particles(), scene->model(), *scene,

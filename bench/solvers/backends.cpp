@@ -32,6 +32,9 @@ class WithRotations : public odpd::System {
   int space_dimension() const override { return a_.space_dimension(); }
   int periodic_directions() const override { return 0; }
   bool translations_are_null() const override { return a_.translations_are_null(); }
+  odpd::Translations translations() const override { return a_.translations(); }
+  std::span<const std::vector<double>> null_motions() const override { return a_.null_motions(); }
+  odpd::Share share() const override { return a_.share(); }
   bool holds_centre_of_mass() const override { return a_.holds_centre_of_mass(); }
   std::uint64_t generation() const override { return a_.generation(); }
 
@@ -112,9 +115,10 @@ template <int D>
 Measured measure(Problem<D>& problem, const Backend& backend, double tolerance) {
   odpd::SolverOptions options = backend.options;
   options.tolerance = tolerance;
-  const WithRotations rotating(problem.resistance);
+  problem.rebuild();
+  const WithRotations rotating(problem.system());
   const odpd::System& system =
-      backend.rotations ? static_cast<const odpd::System&>(rotating) : problem.resistance;
+      backend.rotations ? static_cast<const odpd::System&>(rotating) : problem.system();
   Measured best;
   double rebuild = std::numeric_limits<double>::infinity();
   double peak = 0.0;

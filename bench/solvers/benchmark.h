@@ -2,6 +2,7 @@
 // The parts of the solver benchmark. Each appends rows to CSV files in `out` and skips what is there already.
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,7 @@ struct Options {
   std::vector<double> tolerances;     ///< descending
   int threads = 1;                    ///< of the comparison
   std::vector<int> step_threads;      ///< of triad, product and whole steps
-  double limit_seconds = 300.0;       ///< a solve that is predicted to take longer is skipped
+  double limit_seconds = 0.0;         ///< a solve that is predicted to take longer is skipped
   double limit_gigabytes = 16.0;      ///< likewise for the memory of a backend
   std::vector<std::string> backends;  ///< names; empty: all
   bool quick = false;
@@ -40,6 +41,18 @@ Results ageing_results(const std::filesystem::path& out);
 void run_comparison(const Options& options);
 void run_robustness(const Options& options);
 void run_ageing(const Options& options);
+void run_suspension(const Options& options);
+
+/// Appends the row of a backend, `key`: dimension, geometry, N. It is skipped where it is there already, or predicted to take
+/// too much; else `solved` makes the cells behind `status`.
+void add_solve(Results& solves, const Options& options, const Backend& backend,
+               std::vector<std::string> key, double tolerance,
+               const std::function<std::vector<std::string>(double tolerance)>& solved);
+/// Those cells. `triad`: GB/s.
+std::vector<std::string> solved_cells(const Measured& m, double error, std::int64_t particles,
+                                      double triad);
+/// An empty file of such rows, or what it holds.
+Results solve_results(const std::filesystem::path& file);
 
 /// table.md and the charts, from the rows there are.
 void write_comparison(const Tables& tables, const std::filesystem::path& out);

@@ -14,9 +14,9 @@
 #include "odpd/core/error.h"
 #include "odpd/core/parallel.h"
 #include "odpd/core/timer.h"
-#include "odpd/dynamics/integrator.h"
 #include "prediction.h"
 #include "product.h"
+#include "stepped.h"
 #include "triad.h"
 
 namespace bench {
@@ -61,7 +61,7 @@ class Comparison {
   std::vector<std::string> key() const {
     return {std::to_string(D), spec_.geometry(), std::to_string(spec_.particles)};
   }
-  const std::vector<odpd::Vec<D>>& positions();
+  const Start<D>& start();
   Problem<D>& problem();
   const std::vector<double>& reference();
   void solve(const Backend& backend, double tolerance);
@@ -73,21 +73,21 @@ class Comparison {
   Tables& tables_;
   FluidSpec spec_;
   const std::map<int, double>& triad_;  // GB/s by number of threads
-  std::vector<odpd::Vec<D>> positions_;
+  Start<D> start_;
   std::unique_ptr<Problem<D>> problem_;
   std::optional<std::vector<double>> reference_;  // empty: did not converge
 };
 
 template <int D>
-const std::vector<odpd::Vec<D>>& Comparison<D>::positions() {
+const Start<D>& Comparison<D>::start() {
   odpd::set_threads(options_.threads, spec_.particles);
-  if (positions_.empty()) positions_ = equilibrated<D>(spec_);
-  return positions_;
+  if (start_.empty()) start_ = equilibrated<D>(spec_);
+  return start_;
 }
 
 template <int D>
 Problem<D>& Comparison<D>::problem() {
-  if (!problem_) problem_ = std::make_unique<Problem<D>>(spec_, positions());
+  if (!problem_) problem_ = std::make_unique<Problem<D>>(spec_, start());
   return *problem_;
 }
 
@@ -97,78 +97,23 @@ const std::vector<double>& Comparison<D>::reference() {
   problem().rebuild();
   const auto solver = odpd::make_solver({.name = "pcg", .tolerance = reference_tolerance});
   std::vector<double> x(problem().load.size(), 0.0);
-  solver->bind(problem().resistance);
+  solver->bind(problem().system());
   if (!solver->solve(problem().load, x).converged) x.clear();
   return reference_.emplace(std::move(x));
 }
 
-/// The cells behind status: of a solve that was made.
 template <int D>
 std::vector<std::string> Comparison<D>::solved(const Backend& backend, double tolerance) {
   const Measured m = measure(problem(), backend, tolerance);
   const double error =
       reference().empty() ? std::numeric_limits<double>::quiet_NaN() : difference(m.x, reference());
-  const double n = static_cast<double>(spec_.particles);
-  return {m.report.converged ? "ok" : "failed",
-          std::to_string(m.report.iterations),
-          digits(m.rebuild),
-          digits(m.setup),
-          digits(m.assembly),
-          digits(m.rebind),
-          digits(m.solve),
-          digits(m.report.residual),
-          digits(error),
-          digits(static_cast<double>(m.report.memory_bytes) / n),
-          digits(m.peak_bytes / n),
-          std::to_string(m.repeats),
-          digits(triad_.at(options_.threads)),
-          m.report.failure.empty() ? m.report.note : m.report.failure};
+  return solved_cells(m, error, spec_.particles, triad_.at(options_.threads));
 }
 
 template <int D>
 void Comparison<D>::solve(const Backend& backend, double tolerance) {
-  std::vector<std::string> row = key();
-  row.insert(row.end(),
-             {backend.name, fmt::format("{:g}", tolerance), std::to_string(options_.threads)});
-  if (tables_.solves.has(row)) return;
-  const auto unmeasured = [&](const std::string& status, const std::string& note) {
-    row.insert(row.end(),
-               {status, "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", note});
-  };
-  const Prediction expected =
-      predict(tables_.solves, backend, D, spec_.geometry(), tolerance, spec_.particles);
-  const std::size_t twin =
-      backend.direct ? solved_twin(tables_.solves, row) : tables_.solves.size();
-  if (!available(backend)) {
-    unmeasured("skipped", "not in this build");
-  } else if (!expected.objection.empty()) {
-    unmeasured("skipped", expected.objection);
-  } else if (expected.seconds > options_.limit_seconds) {
-    unmeasured("skipped", fmt::format("would take about {:.0f} s; the limit is {:g} s",
-                                      expected.seconds, options_.limit_seconds));
-  } else if (expected.bytes > 1e9 * options_.limit_gigabytes) {
-    unmeasured("skipped", fmt::format("would need about {:.2g} GB; the limit is {:g} GB",
-                                      1e-9 * expected.bytes, options_.limit_gigabytes));
-  } else if (twin < tables_.solves.size()) {
-    for (const char* column : measured_columns) row.push_back(tables_.solves.word(twin, column));
-  } else {
-    try {
-      const auto cells = solved(backend, backend.direct ? options_.tolerances.back() : tolerance);
-      row.insert(row.end(), cells.begin(), cells.end());
-    } catch (const odpd::Error& e) {
-      unmeasured("failed", e.what());
-    } catch (const std::bad_alloc&) {
-      unmeasured("failed", "out of memory");
-    }
-  }
-  tables_.solves.add(row);
-  const std::size_t last = tables_.solves.size() - 1;
-  const auto cell = [&](const char* column) { return tables_.solves.word(last, column); };
-  say(fmt::format(
-      "{}D {:8} N = {:<8} {:16} {:6} {:>6} iterations, set-up {:>9} s, solve {:>9} s {}", D,
-      spec_.geometry(), spec_.particles, backend.name, cell("tolerance"), cell("iterations"),
-      cell("setup_s"), cell("solve_s"),
-      cell("status") == "ok" ? "" : cell("status") + ": " + cell("note")));
+  add_solve(tables_.solves, options_, backend, key(), tolerance,
+            [&](double at) { return solved(backend, at); });
 }
 
 /// The product with R, in double as the residual has it and packed in single precision as the iteration of pcg has it.
@@ -182,8 +127,8 @@ void Comparison<D>::product() {
     odpd::set_threads(threads, spec_.particles);
     const double rebuild = std::min(p.rebuild(), p.rebuild());
     std::vector<double> y(p.load.size());
-    const double apply = best_seconds([&] { p.resistance.apply(p.load, y); });
-    const Packed packed = pack_and_multiply(p.resistance);
+    const double apply = best_seconds([&] { p.system().apply(p.load, y); });
+    const Packed packed = pack_and_multiply(p.resistance.mobile());
     const double n = static_cast<double>(spec_.particles);
     row.insert(row.end(),
                {digits(p.neighbours()), digits(1e9 * rebuild / n), digits(1e9 * apply / n),
@@ -199,40 +144,84 @@ void Comparison<D>::step(int threads) {
   std::vector<std::string> row = key();
   row.insert(row.end(), {fmt::format("{:g}", step_tolerance), std::to_string(threads)});
   if (tables_.steps.has(row)) return;
-  const auto scene = scene_at<D>(spec_, positions());
+  const auto scene = scene_at<D>(spec_, start());
   odpd::set_threads(threads, spec_.particles);
-  odpd::Dynamics<D> dynamics(scene->box(), scene->particles(), scene->model(), *scene,
-                             odpd::make_solver({.name = "pcg", .tolerance = step_tolerance}),
-                             {.seed = seed});
-  const auto integrator = odpd::make_integrator<D>("trapezoidal");
+  Stepped<D> stepped(*scene, step_tolerance);
   const std::int64_t steps = spec_.particles <= 20000 ? 20 : spec_.particles <= 200000 ? 5 : 2;
-  odpd::Clock clock{.dt = time_step};
-  for (; clock.step < 2; clock.advance()) integrator->step(dynamics, clock);
-  dynamics.phases() = {};
-  const odpd::SolverStatistics before = dynamics.statistics();
-  const odpd::Stopwatch watch;
-  for (; clock.step < 2 + steps; clock.advance()) integrator->step(dynamics, clock);
-  const double all = watch.seconds();
-  const double per = 1e9 / static_cast<double>(steps * spec_.particles);
-  const double iterations =
-      static_cast<double>(dynamics.statistics().iterations - before.iterations) /
-      static_cast<double>(dynamics.statistics().solves - before.solves);
-  row.insert(row.end(), {std::to_string(steps), digits(iterations)});
-  double rest = all;
-  using odpd::Phase;
-  for (const Phase phase :
-       {Phase::neighbours, Phase::edges, Phase::noise, Phase::assembly, Phase::solve}) {
-    row.push_back(digits(per * dynamics.phases()[phase]));
-    rest -= dynamics.phases()[phase];
-  }
-  row.insert(row.end(), {digits(per * rest), digits(per * all)});
+  const auto measured = stepped.advance(steps);
+  row.push_back(std::to_string(steps));
+  for (const double value : measured.columns()) row.push_back(digits(value));
   tables_.steps.add(row);
   say(fmt::format("{}D {:8} N = {:<8} trapezoidal step, {} thread(s): {} ns per particle", D,
-                  spec_.geometry(), spec_.particles, threads, digits(per * all)));
+                  spec_.geometry(), spec_.particles, threads, digits(measured.all)));
   odpd::set_threads(options_.threads, spec_.particles);
 }
 
 }  // namespace
+
+std::vector<std::string> solved_cells(const Measured& m, double error, std::int64_t particles,
+                                      double triad) {
+  const double n = static_cast<double>(particles);
+  return {m.report.converged ? "ok" : "failed",
+          std::to_string(m.report.iterations),
+          digits(m.rebuild),
+          digits(m.setup),
+          digits(m.assembly),
+          digits(m.rebind),
+          digits(m.solve),
+          digits(m.report.residual),
+          digits(error),
+          digits(static_cast<double>(m.report.memory_bytes) / n),
+          digits(m.peak_bytes / n),
+          std::to_string(m.repeats),
+          digits(triad),
+          m.report.failure.empty() ? m.report.note : m.report.failure};
+}
+
+void add_solve(Results& solves, const Options& options, const Backend& backend,
+               std::vector<std::string> row, double tolerance,
+               const std::function<std::vector<std::string>(double tolerance)>& solved) {
+  const std::string dimension = row[0], geometry = row[1], size = row[2];
+  row.insert(row.end(),
+             {backend.name, fmt::format("{:g}", tolerance), std::to_string(options.threads)});
+  if (solves.has(row)) return;
+  const auto unmeasured = [&](const std::string& status, const std::string& note) {
+    row.insert(row.end(),
+               {status, "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", note});
+  };
+  const Prediction expected =
+      predict(solves, backend, std::stoi(dimension), geometry, tolerance, std::stoll(size));
+  const std::size_t twin = backend.direct ? solved_twin(solves, row) : solves.size();
+  if (!available(backend)) {
+    unmeasured("skipped", "not in this build");
+  } else if (!expected.objection.empty()) {
+    unmeasured("skipped", expected.objection);
+  } else if (expected.seconds > options.limit_seconds) {
+    unmeasured("skipped", fmt::format("would take about {:.0f} s; the limit is {:g} s",
+                                      expected.seconds, options.limit_seconds));
+  } else if (expected.bytes > 1e9 * options.limit_gigabytes) {
+    unmeasured("skipped", fmt::format("would need about {:.2g} GB; the limit is {:g} GB",
+                                      1e-9 * expected.bytes, options.limit_gigabytes));
+  } else if (twin < solves.size()) {
+    for (const char* column : measured_columns) row.push_back(solves.word(twin, column));
+  } else {
+    try {
+      const auto cells = solved(backend.direct ? options.tolerances.back() : tolerance);
+      row.insert(row.end(), cells.begin(), cells.end());
+    } catch (const odpd::Error& e) {
+      unmeasured("failed", e.what());
+    } catch (const std::bad_alloc&) {
+      unmeasured("failed", "out of memory");
+    }
+  }
+  solves.add(row);
+  const std::size_t last = solves.size() - 1;
+  const auto cell = [&](const char* column) { return solves.word(last, column); };
+  say(fmt::format(
+      "{}D {:8} N = {:<8} {:16} {:6} {:>6} iterations, set-up {:>9} s, solve {:>9} s {}", dimension,
+      geometry, size, backend.name, cell("tolerance"), cell("iterations"), cell("setup_s"),
+      cell("solve_s"), cell("status") == "ok" ? "" : cell("status") + ": " + cell("note")));
+}
 
 void run_comparison(const Options& options) {
   Tables tables(options.out);

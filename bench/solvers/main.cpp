@@ -1,5 +1,5 @@
 // Solver benchmark: odpd's pcg against other solvers on the same configurations, in one process (docs/performance.md).
-//   scripts/bench [--quick] [--robustness | --ageing] [--out DIR]
+//   scripts/bench [--quick] [--robustness | --ageing | --suspension] [--out DIR]
 #include <omp.h>
 
 #include <CLI/CLI.hpp>
@@ -42,6 +42,7 @@ struct CommandLine {
   Options options;
   bool robustness = false;
   bool ageing = false;
+  bool suspension = false;
 };
 
 void declare(CLI::App& app, CommandLine& line) {
@@ -49,19 +50,26 @@ void declare(CLI::App& app, CommandLine& line) {
   CLI::Option* robustness =
       app.add_flag("--robustness", line.robustness,
                    "iterations in scenes where solvers may fail: robustness.csv, .md");
-  app.add_flag("--ageing", line.ageing, "iterations over 50 steps with one solver: ageing.csv, .md")
-      ->excludes(robustness);
-  app.add_flag("--quick", o.quick, "sizes 540 and 10000 only (--robustness, --ageing: 540)");
+  CLI::Option* ageing = app.add_flag("--ageing", line.ageing,
+                                     "iterations over 50 steps with one solver: ageing.csv, .md")
+                            ->excludes(robustness);
+  app.add_flag("--suspension", line.suspension,
+               "rigid bodies against a fluid of as many particles: suspension*.csv, .md, charts")
+      ->excludes(robustness)
+      ->excludes(ageing);
+  app.add_flag("--quick", o.quick,
+               "sizes 540 and 10000 only (--robustness, --ageing: 540; --suspension: 10000)");
   app.add_flag("--fresh", o.fresh, "forget the rows that --out holds of this part");
   app.add_option("--out", o.out, "output directory; rows that are there are not measured again")
       ->take_last()
       ->capture_default_str();
   app.add_option("--sizes", o.sizes,
                  "numbers of fluid particles, separated by commas [540,10000,100000,1000000; "
-                 "--robustness, --ageing: 10000]")
+                 "--robustness, --ageing: 10000; --suspension: 10000,100000,1000000]")
       ->delimiter(',')
       ->check(CLI::Range(std::int64_t{100}, std::int64_t{100000000}));
-  app.add_option("--tolerance", o.tolerances, "separated by commas [1e-3,1e-5,1e-7]")
+  app.add_option("--tolerance", o.tolerances,
+                 "separated by commas [1e-3,1e-5,1e-7; --suspension: 1e-7]")
       ->delimiter(',')
       ->check(CLI::Range(1e-12, 0.1));
   app.add_option("--backends", o.backends,
@@ -77,8 +85,9 @@ void declare(CLI::App& app, CommandLine& line) {
       ->delimiter(',')
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
-  app.add_option("--limit-seconds", o.limit_seconds, "solves predicted to take longer are skipped")
-      ->capture_default_str();
+  app.add_option("--limit-seconds", o.limit_seconds,
+                 "solves predicted to take longer are skipped [300; --suspension: 15]")
+      ->check(CLI::PositiveNumber);
   app.add_option("--limit-gigabytes", o.limit_gigabytes,
                  "backends predicted to need more memory are skipped")
       ->capture_default_str();
@@ -90,6 +99,9 @@ void choose_defaults(CommandLine& line) {
   if (o.sizes.empty()) {
     if (scenes)
       o.sizes = {o.quick ? 540 : 10000};
+    else if (line.suspension)
+      o.sizes = o.quick ? std::vector<std::int64_t>{10000}
+                        : std::vector<std::int64_t>{10000, 100000, 1000000};
     else if (o.quick)
       o.sizes = {540, 10000};
     else
@@ -99,7 +111,9 @@ void choose_defaults(CommandLine& line) {
     o.step_threads = {1};
     if (omp_get_num_procs() > 1) o.step_threads.push_back(2);
   }
+  if (o.tolerances.empty() && line.suspension) o.tolerances = {1e-7};
   if (o.tolerances.empty()) o.tolerances = {1e-3, 1e-5, 1e-7};
+  if (o.limit_seconds == 0.0) o.limit_seconds = line.suspension ? 15.0 : 300.0;
   std::sort(o.sizes.begin(), o.sizes.end());  // small sizes predict the large ones
   std::sort(o.tolerances.rbegin(), o.tolerances.rend());
 }
@@ -110,6 +124,9 @@ void forget(const CommandLine& line) {
   if (line.options.backends.empty()) files.push_back("results.csv");
   if (line.robustness) files = {"robustness.csv"};
   if (line.ageing) files = {"ageing.csv"};
+  if (line.suspension)
+    files = {"suspension.csv", "suspension_steps.csv", "suspension_backends.csv",
+             "suspension_robustness.csv"};
   for (const char* file : files) std::filesystem::remove(line.options.out / file);
 }
 
@@ -131,6 +148,8 @@ int run(int argc, char** argv) {
     run_robustness(line.options);
   else if (line.ageing)
     run_ageing(line.options);
+  else if (line.suspension)
+    run_suspension(line.options);
   else
     run_comparison(line.options);
   say("results: " + line.options.out.string());

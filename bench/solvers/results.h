@@ -21,6 +21,7 @@ class Results {
   void forget(const std::string& column, const std::vector<std::string>& words);
 
   std::size_t size() const { return rows_.size(); }
+  std::size_t columns() const { return columns_.size(); }
   const std::string& word(std::size_t row, const std::string& column) const;
   double number(std::size_t row, const std::string& column) const;  ///< NaN where there is none
   /// Different words of a column, in order of appearance.

@@ -10,7 +10,6 @@
 #include "benchmark.h"
 #include "odpd/core/error.h"
 #include "odpd/core/parallel.h"
-#include "odpd/core/random.h"
 #include "odpd/io/file.h"
 
 namespace bench {
@@ -22,19 +21,6 @@ constexpr double thinnest = 2.0;  // cutoffs: below that nearest images are ambi
 
 template <int D>
 using Change = std::function<void(Problem<D>&)>;
-
-/// Every tenth edge, chosen at random, becomes a bond of stiffness k_c dt = ratio zeta.
-template <int D>
-void stiffen(Problem<D>& problem, double ratio) {
-  const odpd::CounterRandom random(1, odpd::Stream::probe);
-  auto& network = problem.stage.network;
-  const auto k_c = network.k_c.each();
-  for (std::size_t k = 0; k < k_c.size(); ++k) {
-    const bool bond = random.uniforms(1, 0, k, 0)[0] < 0.1;
-    k_c[k] = bond ? ratio * network.zeta_par[k] / time_step : 0.0;
-  }
-  problem.stiffness_time = time_step;
-}
 
 template <int D>
 class Robustness {
@@ -52,17 +38,17 @@ class Robustness {
   void thin_boxes(bool walls);
   void solve(const std::string& scene, const FluidSpec& spec, const Change<D>& change = {});
   std::vector<std::string> solved(const Backend& backend, Problem<D>& problem);
-  const std::vector<odpd::Vec<D>>& positions(const FluidSpec& spec);
+  const Start<D>& start(const FluidSpec& spec);
 
   std::int64_t particles_;
   Results& results_;
-  std::map<std::tuple<bool, double, double>, std::vector<odpd::Vec<D>>> positions_;
+  std::map<std::tuple<bool, double, double>, Start<D>> starts_;
 };
 
 /// Positions do not depend on friction: one start per density and box.
 template <int D>
-const std::vector<odpd::Vec<D>>& Robustness<D>::positions(const FluidSpec& spec) {
-  auto& made = positions_[{spec.walls, spec.density, spec.thin}];
+const Start<D>& Robustness<D>::start(const FluidSpec& spec) {
+  auto& made = starts_[{spec.walls, spec.density, spec.thin}];
   if (made.empty())
     made = equilibrated<D>({.walls = spec.walls,
                             .particles = spec.particles,
@@ -76,7 +62,7 @@ std::vector<std::string> Robustness<D>::solved(const Backend& backend, Problem<D
   odpd::SolverOptions options = backend.options;
   options.tolerance = tolerance;
   const auto solver = odpd::make_solver(options);
-  solver->bind(problem.resistance);
+  solver->bind(problem.system());
   std::vector<double> x(problem.load.size(), 0.0);
   const odpd::SolveReport report = solver->solve(problem.load, x);
   return {std::to_string(report.iterations), report.converged ? "yes" : "no",
@@ -92,7 +78,7 @@ void Robustness<D>::solve(const std::string& scene, const FluidSpec& spec,
                                  std::to_string(spec.particles), backend.name};
     if (results_.has(row)) continue;
     try {
-      Problem<D> problem(spec, positions(spec));
+      Problem<D> problem(spec, start(spec));
       if (change) change(problem);
       problem.rebuild();
       const auto cells = solved(backend, problem);
@@ -134,7 +120,7 @@ template <int D>
 void Robustness<D>::bonds(bool walls) {
   for (const double ratio : {10.0, 100.0, 1000.0})
     solve(fmt::format("bonds k_c dt = {:g} zeta", ratio), {.walls = walls, .particles = particles_},
-          [ratio](Problem<D>& problem) { stiffen(problem, ratio); });
+          [ratio](Problem<D>& problem) { problem.stiffen(ratio); });
 }
 
 template <int D>

@@ -168,9 +168,12 @@ std::string step_table(const Results& steps) {
 
 }  // namespace
 
+Results solve_results(const std::filesystem::path& file) {
+  return {file, behind({"dimension", "geometry", "N", "backend", "tolerance", "threads"}), 6};
+}
+
 Tables::Tables(const std::filesystem::path& out)
-    : solves(out / "results.csv",
-             behind({"dimension", "geometry", "N", "backend", "tolerance", "threads"}), 6),
+    : solves(solve_results(out / "results.csv")),
       products(out / "products.csv",
                {"dimension", "geometry", "N", "threads", "neighbours", "rebuild_ns", "product_ns",
                 "packed_ns", "packed_bytes", "iteration_bytes", "triad_GB_s"},
