@@ -83,7 +83,7 @@ double peak_bytes(const Simulation<D>& simulation, const Stage<D>& stage) {
   for (const RigidBody<D>& body : particles.bodies) {
     if (body.known) continue;
     size.bodies += 1.0;
-    size.sites += static_cast<double>(body.members.size());
+    size.constituents += static_cast<double>(body.members.size());
   }
   double bytes = run_bytes<D>(size);
   if (simulation.settings().solver.name != "pcg")

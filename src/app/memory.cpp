@@ -18,7 +18,7 @@ namespace {
 // In 2D and 3D. The program and its libraries; then what grows, with free bodies more.
 constexpr double bytes_at_first = 45e6, bytes_per_body = 250.0;
 constexpr std::array<double, 2> bytes_per_particle{1110.0, 1980.0}, bytes_per_edge{204.0, 230.0};
-constexpr std::array<double, 2> more_per_particle{65.0, 110.0}, bytes_per_site{150.0, 60.0};
+constexpr std::array<double, 2> more_per_particle{65.0, 110.0}, bytes_per_constituent{150.0, 60.0};
 // Of larger bodies inner pairs count as edges: to look at all would take longer than a moment.
 constexpr std::size_t most_sites = 4000;
 
@@ -81,7 +81,7 @@ double run_bytes(const RunSize& size) {
   const double per_particle =
       bytes_per_particle[d] + (size.bodies > 0.0 ? more_per_particle[d] : 0.0);
   return bytes_at_first + per_particle * size.particles + bytes_per_edge[d] * size.edges +
-         bytes_per_body * size.bodies + bytes_per_site[d] * size.sites;
+         bytes_per_body * size.bodies + bytes_per_constituent[d] * size.constituents;
 }
 
 template <int D>
@@ -96,12 +96,12 @@ MemoryNeed memory_need(const SceneSettings<D>& scene) {
   double in_bodies = 0.0, within_bodies = 0.0;
   for (const BodySettings<D>& body : scene.bodies) {
     const double bodies = static_cast<double>(body.bodies());
-    const double sites = bodies * static_cast<double>(body.shape.size());
-    in_bodies += sites;
+    const double constituents = bodies * static_cast<double>(body.shape.size());
+    in_bodies += constituents;
     within_bodies += bodies * inner_pairs(body.shape, r_c);
     if (body.motion != BodyMotion::free) continue;
     need.size.bodies += bodies;
-    need.size.sites += sites;
+    need.size.constituents += constituents;
   }
   double in_molecules = 0.0;
   for (const MoleculeSettings<D>& m : scene.molecules)

@@ -46,7 +46,8 @@ void Dynamics<D>::add_mean_flow(const Stage<D>& stage, Unknowns& q) {
     mean[box_.shear->flow] += stage.crossed[i] * stage.box.sliding;
   }
   own.ranks->sum(std::span(mean.x));
-  mean *= 1.0 / static_cast<double>(motion_.dofs().mobile());
+  const DofMap<D>& dofs = motion_.dofs();
+  mean *= 1.0 / static_cast<double>(dofs.mobile_share().count(dofs.mobile()));
   motion_.dofs().translations().add(mean.x, q);
 }
 

@@ -13,7 +13,7 @@ namespace odpd {
 
 struct RunSize {
   double particles = 0.0, edges = 0.0;
-  double bodies = 0.0, sites = 0.0;  ///< free bodies, and their constituents
+  double bodies = 0.0, constituents = 0.0;  ///< free bodies, and their constituents
 };
 
 /// At the peak of a run, about.
