@@ -20,13 +20,8 @@ namespace {
 constexpr std::array shares{0.03, 0.3, 0.9};
 constexpr std::array radii{0.5, 1.0, 2.0, 4.0};
 constexpr double step_tolerance = 1e-5;
-constexpr std::int64_t largest_aged = 200000;  // a run of 50 steps is too long above
-constexpr std::int64_t all_backends = 20000;   // in all scenes up to here, above in some
-constexpr int rounds = 4;
-
-bool one_of_few(double share, double radius) {
-  return (radius == 1.0 && share >= 0.3) || (radius == 2.0 && share == 0.3);
-}
+constexpr double usual_radius = 1.0;  // where all radii would take too long
+constexpr int rounds = 8;
 
 /// Above a share of 0.6 no random places are found, so the bodies begin on a lattice. Large balls (3D) are filled: a sphere
 /// with sites on its surface alone lets the fluid's particles in, who are rattlers there, and has so few sites that packed
@@ -44,12 +39,6 @@ BodySpec bodies_of(double share, double radius) {
   return spec;
 }
 
-struct Aged {
-  std::int64_t last = -1;       ///< iterations of the first solve of the last step
-  std::int64_t most = -1;       ///< of any solve
-  std::int64_t fallbacks = -1;  ///< solves whose preconditioner was given up
-};
-
 std::string count(std::int64_t n) { return n < 0 ? "-" : std::to_string(n); }
 
 /// Smallest distance of two sites.
@@ -59,23 +48,6 @@ double nearest_sites(const std::vector<odpd::Vec<D>>& frame) {
   for (std::size_t i = 0; i < frame.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) least = std::min(least, norm(frame[i] - frame[j]));
   return least;
-}
-
-/// Trapezoidal steps with one solver object.
-template <int D>
-Aged aged(const FluidSpec& spec, const Start<D>& start) {
-  if (spec.particles > largest_aged) return {};
-  const auto scene = scene_at<D>(spec, start);
-  odpd::Dynamics<D> dynamics(scene->box(), scene->particles(), scene->model(), *scene,
-                             odpd::make_solver({.name = "pcg", .tolerance = suspension_tolerance}),
-                             {.seed = seed});
-  const auto integrator = odpd::make_integrator<D>("trapezoidal");
-  Aged result;
-  for (odpd::Clock clock{.dt = time_step}; clock.step <= aged_steps; clock.advance())
-    result.last = integrator->step(dynamics, clock).start.report.iterations;
-  result.most = dynamics.statistics().most_iterations;
-  result.fallbacks = dynamics.statistics().fallbacks;
-  return result;
 }
 
 /// All suspensions of one number of particles.
@@ -89,10 +61,14 @@ class Suspensions {
     fluid_alone();
     for (const double share : shares)
       for (const double radius : radii)
-        if (fluid_spec_.particles <= largest_aged || one_of_few(share, radius)) run(share, radius);
+        if (fluid_spec_.particles <= largest_aged || radius == usual_radius) run(share, radius);
   }
 
  private:
+  /// Fifty steps of a million particles only once.
+  bool ages(double share, double radius) const {
+    return fluid_spec_.particles <= largest_aged || (share == 0.3 && radius == usual_radius);
+  }
   void fluid_alone();
   void run(double share, double radius);
   void solves(const std::vector<std::string>& key, const FluidSpec& spec, const Start<D>& start);
@@ -120,7 +96,7 @@ void Suspensions<D>::fluid_alone() {
   if (tables_.scenes.has(row)) return;
   Problem<D> problem(fluid_spec_, fluid_start());
   const Measured m = measure(problem, own_backends().front(), suspension_tolerance);
-  const Aged old = aged<D>(fluid_spec_, fluid_start());
+  const Aged old = ages(0.0, 0.0) ? aged<D>(fluid_spec_, fluid_start()) : Aged{};
   row.insert(row.end(), {"ok", "0", "0", "0", "-", digits(problem.neighbours()),
                          std::to_string(m.report.iterations), count(old.last), count(old.most),
                          count(old.fallbacks)});
@@ -164,7 +140,7 @@ void Suspensions<D>::solves(const std::vector<std::string>& key, const FluidSpec
   if (tables_.scenes.has(key)) return;
   Problem<D> problem(spec, start);
   if (!fluid_) fluid_ = std::make_unique<Problem<D>>(fluid_spec_, fluid_start());
-  const Backend& pcg = own_backends().front();
+  const Backend pcg = own_backends().front();
   std::array<std::array<double, 3>, 2> least;
   for (auto& side : least) side.fill(std::numeric_limits<double>::infinity());
   Measured first;
@@ -179,7 +155,7 @@ void Suspensions<D>::solves(const std::vector<std::string>& key, const FluidSpec
   if (!first.report.converged)
     throw odpd::SolverError(first.report.failure, odpd::SolverError::Cause::not_converged);
   if (spec.particles > largest_aged) fluid_.reset();
-  const Aged old = aged<D>(spec, start);
+  const Aged old = ages(spec.bodies->share, spec.bodies->radius) ? aged<D>(spec, start) : Aged{};
   const auto bodies = static_cast<double>(start.bodies.size());
   const std::size_t sites = problem.scene->particles().bodies.front().members.size();
   std::vector<std::string> row = key;
@@ -210,7 +186,8 @@ void Suspensions<D>::steps(const std::vector<std::string>& key, const FluidSpec&
   rows[0].push_back("bodies");
   rows[1].push_back("fluid");
   if (tables_.steps.has(rows[0])) return;
-  const std::int64_t all = spec.particles <= 20000 ? 20 : spec.particles <= largest_aged ? 8 : 4;
+  if (spec.particles > largest_aged) return;
+  const std::int64_t all = spec.particles <= 20000 ? 40 : 8;
   const auto bodies = scene_at<D>(spec, start);
   const auto fluid = scene_at<D>(fluid_spec_, fluid_start());
   Stepped<D> with(*bodies, step_tolerance), without(*fluid, step_tolerance);
@@ -233,10 +210,7 @@ void Suspensions<D>::steps(const std::vector<std::string>& key, const FluidSpec&
 template <int D>
 void Suspensions<D>::packaged(const std::vector<std::string>& key, const FluidSpec& spec,
                               const Start<D>& start) {
-  const double radius = spec.bodies->radius;
-  const bool few = one_of_few(spec.bodies->share, radius);
-  if (spec.particles > largest_aged || (spec.particles > all_backends && !few)) return;
-  if (options_.quick && radius != 1.0) return;
+  if (spec.particles > largest_aged || spec.bodies->radius != usual_radius) return;
   const std::vector<std::string> name{key[0], suspension_name(key[2], key[3]), key[1]};
   std::unique_ptr<Problem<D>> problem;
   for (const Backend& backend : options_.chosen()) {
@@ -252,6 +226,24 @@ void Suspensions<D>::packaged(const std::vector<std::string>& key, const FluidSp
 
 }  // namespace
 
+template <int D>
+Aged aged(const FluidSpec& spec, const Start<D>& start) {
+  const auto scene = scene_at<D>(spec, start);
+  odpd::Dynamics<D> dynamics(scene->box(), scene->particles(), scene->model(), *scene,
+                             odpd::make_solver({.name = "pcg", .tolerance = suspension_tolerance}),
+                             {.seed = seed});
+  const auto integrator = odpd::make_integrator<D>("trapezoidal");
+  Aged result;
+  for (odpd::Clock clock{.dt = time_step}; clock.step <= aged_steps; clock.advance())
+    result.last = integrator->step(dynamics, clock).start.report.iterations;
+  result.most = dynamics.statistics().most_iterations;
+  result.fallbacks = dynamics.statistics().fallbacks;
+  return result;
+}
+
+template Aged aged<2>(const FluidSpec&, const Start<2>&);
+template Aged aged<3>(const FluidSpec&, const Start<3>&);
+
 double allowed_ratio(double spacing) { return spacing >= 0.4 - 1e-9 ? 1.3 : 1.8; }
 
 std::string suspension_name(const std::string& share, const std::string& radius) {
@@ -265,8 +257,8 @@ void run_suspension(const Options& options) {
     Suspensions<2>(options, tables, size).run();
     Suspensions<3>(options, tables, size).run();
     write_suspension(tables, options.out);
-    if (size != options.sizes.front()) continue;
-    run_suspension_robustness(options, tables.robustness);
+    if (size == options.sizes.front()) run_suspension_robustness(options, tables.robustness);
+    run_suspension_growth(options, size, tables.robustness);
     write_suspension(tables, options.out);
   }
 }

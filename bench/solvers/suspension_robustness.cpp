@@ -14,16 +14,24 @@ namespace {
 
 constexpr std::int64_t usual_particles = 10000;
 
+/// On the golden spiral of a sphere nearest sites are 0.45 apart at a mean spacing of 0.55.
+template <int D>
+BodySpec usual_bodies() {
+  return {.share = 0.3, .radius = 1.0, .spacing = D == 2 ? 0.45 : 0.55};
+}
+
 template <int D>
 class HardSuspensions {
  public:
   explicit HardSuspensions(Results& results) : results_(results) {}
   void run();
+  void grow(std::int64_t particles);
 
  private:
   using Change = std::function<void(Problem<D>&)>;
   void solve(const std::string& scene, FluidSpec spec, const BodySpec& bodies,
-             const Change& change = {});
+             const Change& change = {}, bool old = false);
+  static odpd::SolveReport run_solved(const FluidSpec& spec);
   odpd::SolveReport solved(const FluidSpec& spec, const Change& change);
 
   Results& results_;
@@ -40,16 +48,27 @@ odpd::SolveReport HardSuspensions<D>::solved(const FluidSpec& spec, const Change
   return solver->solve(problem.load, x);
 }
 
+/// The most iterations in a run of 50 steps.
+template <int D>
+odpd::SolveReport HardSuspensions<D>::run_solved(const FluidSpec& spec) {
+  const Aged run = aged<D>(spec, equilibrated<D>(spec));
+  odpd::SolveReport report;
+  report.converged = true;
+  report.iterations = run.most;
+  if (run.fallbacks > 0) report.note = fmt::format("{} solves", run.fallbacks);
+  return report;
+}
+
 template <int D>
 void HardSuspensions<D>::solve(const std::string& scene, FluidSpec spec, const BodySpec& bodies,
-                               const Change& change) {
+                               const Change& change, bool old) {
   std::vector<std::string> row{scene, std::to_string(D), std::to_string(spec.particles)};
   if (results_.has(row)) return;
   const double allowed = allowed_ratio(bodies.spacing);
   try {
-    const odpd::SolveReport fluid = solved(spec, change);
+    const odpd::SolveReport fluid = old ? run_solved(spec) : solved(spec, change);
     spec.bodies = bodies;
-    const odpd::SolveReport report = solved(spec, change);
+    const odpd::SolveReport report = old ? run_solved(spec) : solved(spec, change);
     const double ratio =
         static_cast<double>(report.iterations) / static_cast<double>(fluid.iterations);
     const std::string verdict = !report.converged      ? "failed"
@@ -69,8 +88,7 @@ void HardSuspensions<D>::solve(const std::string& scene, FluidSpec spec, const B
 
 template <int D>
 void HardSuspensions<D>::run() {
-  // On the golden spiral of a sphere nearest sites are 0.45 apart then.
-  const BodySpec usual{.share = 0.3, .radius = 1.0, .spacing = D == 2 ? 0.45 : 0.55};
+  const BodySpec usual = usual_bodies<D>();
   const FluidSpec fluid{.particles = usual_particles};
   const auto bodies = [&](const std::function<void(BodySpec&)>& change) {
     BodySpec spec = usual;
@@ -135,12 +153,31 @@ void HardSuspensions<D>::run() {
           usual);
 }
 
+/// Walls and shear: at N = 1e4 `run` has the solver made anew.
+template <int D>
+void HardSuspensions<D>::grow(std::int64_t particles) {
+  const BodySpec usual = usual_bodies<D>();
+  const FluidSpec walls{.walls = true, .particles = particles};
+  const FluidSpec sheared{.particles = particles, .shear = 2.0};
+  solve("walls", walls, usual);
+  solve("shear", sheared, usual);
+  if (particles > largest_aged) return;
+  solve("walls; 50 steps with one solver, the most", walls, usual, {}, true);
+  solve("shear; 50 steps with one solver, the most", sheared, usual, {}, true);
+}
+
 }  // namespace
 
 void run_suspension_robustness(const Options& options, Results& results) {
   odpd::set_threads(options.threads, usual_particles);
   HardSuspensions<2>(results).run();
   HardSuspensions<3>(results).run();
+}
+
+void run_suspension_growth(const Options& options, std::int64_t size, Results& results) {
+  odpd::set_threads(options.threads, size);
+  HardSuspensions<2>(results).grow(size);
+  HardSuspensions<3>(results).grow(size);
 }
 
 }  // namespace bench
