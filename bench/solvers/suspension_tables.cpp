@@ -77,7 +77,7 @@ std::string scene_table(const Results& scenes) {
   return text;
 }
 
-std::string step_table(const Results& steps) {
+std::string suspension_step_table(const Results& steps) {
   std::string text =
       "\n## The trapezoidal step by phase, two solves to 1e-5, ns per particle and step\n\nWith "
       "bodies / of the fluid, in one run.\n\n";
@@ -272,8 +272,9 @@ void write_suspension(const SuspensionTables& tables, const std::filesystem::pat
   odpd::write_file_atomically(
       out / "suspension.md",
       table_head("Suspensions against a fluid of as many particles, one thread") +
-          scene_table(tables.scenes) + size_table(tables.scenes) + step_table(tables.steps) +
-          backend_table(tables.backends) + robustness_table(tables.robustness));
+          scene_table(tables.scenes) + size_table(tables.scenes) +
+          suspension_step_table(tables.steps) + backend_table(tables.backends) +
+          robustness_table(tables.robustness));
   draw(tables, out);
 }
 
