@@ -92,13 +92,14 @@ TYPED_TEST(Suspensions, TheLargestEigenvalueOfTheLocalPartIsTwo) {
   const auto bodies = static_cast<std::size_t>(a.map().bodies());
   const auto solve = [&](std::vector<double> r) {
     for (std::size_t node = bodies; node < a.linear_node(0); ++node) {
-      std::vector<double> m(&all[node * D * D], &all[(node + 1) * D * D]), z(D, 0.0);
+      std::vector<double> m(&all[node * D * D], &all[node * D * D] + D * D), z(D, 0.0);
       EXPECT_TRUE(odpd::invert_definite(m, D));
       for (std::size_t i = 0; i < D * D; ++i) z[i / D] += m[i] * r[node * D + i % D];
       std::copy(z.begin(), z.end(), &r[node * D]);
     }
     for (std::size_t b = 0; b < bodies; ++b) {
-      std::vector<double> m(&blocks[b * own * own], &blocks[(b + 1) * own * own]), z(own, 0.0);
+      std::vector<double> m(&blocks[b * own * own], &blocks[b * own * own] + own * own),
+          z(own, 0.0);
       EXPECT_TRUE(odpd::invert_definite(m, own));
       const auto at = [&](std::size_t k) -> double& {
         return k < D ? r[b * D + k] : r[a.linear_node(b) * D + k - D];
