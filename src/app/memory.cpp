@@ -20,7 +20,7 @@ constexpr double bytes_at_first = 45e6, bytes_per_body = 250.0;
 constexpr std::array<double, 2> bytes_per_particle{1110.0, 1980.0}, bytes_per_edge{204.0, 230.0};
 constexpr std::array<double, 2> more_per_particle{65.0, 110.0}, bytes_per_constituent{150.0, 60.0};
 // Of larger bodies inner pairs count as edges: to look at all would take longer than a moment.
-constexpr std::size_t most_sites = 4000;
+constexpr std::size_t most_constituents = 4000;
 
 // As place_walls makes them.
 template <int D>
@@ -42,7 +42,7 @@ double wall_particles(const SceneSettings<D>& scene) {
 // Pairs inside a body that would be edges in a fluid.
 template <int D>
 double inner_pairs(const std::vector<Vec<D>>& shape, double cutoff) {
-  if (shape.size() > most_sites) return 0.0;
+  if (shape.size() > most_constituents) return 0.0;
   double pairs = 0.0;
   for (std::size_t i = 0; i < shape.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) pairs += norm(shape[i] - shape[j]) < cutoff ? 1.0 : 0.0;

@@ -42,7 +42,6 @@ void RigidResistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>&
   if (dofs_ == nullptr) return;
   map_.rebuild(dofs, arms);
   node_.resize(index(dofs.mobile()));
-  number_.resize(node_.size());
   const std::span<const std::int32_t> free = dofs.free_particles();
   parallel_for(std::ssize(free), [&](std::int64_t k) {
     node_[index(dofs.mobile_of(index(free[index(k)])))] =
@@ -55,7 +54,6 @@ void RigidResistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>&
     for (auto member = map_.begin(b); member < map_.end(b); ++member) {
       const auto row = index(map_.rows()[index(member)]);
       node_[row] = -static_cast<std::int32_t>(body) - 1;
-      number_[row] = static_cast<std::int32_t>(member);
     }
   });
   null_motions_.clear();
@@ -244,6 +242,9 @@ const BlockCsr& RigidResistance<D>::matrix() const {
   m.start.push_back(0);
   Block unit{};
   for (std::size_t c = 0; c < D; ++c) unit[c * D + c] = 1.0;
+  std::vector<std::int32_t> member_of(node_.size());  // numbers of constituents in map_
+  for (std::size_t member = 0; member < map_.rows().size(); ++member)
+    member_of[index(map_.rows()[member])] = static_cast<std::int32_t>(member);
   // The row of a node: blocks by column, `slot` says where a column stands among them (-1: not yet).
   std::vector<std::int32_t> slot(index(nodes()), -1);
   std::vector<std::pair<std::int32_t, Block>> blocks;
@@ -266,7 +267,7 @@ const BlockCsr& RigidResistance<D>::matrix() const {
       const auto b = index(-node_[other] - 1);
       Block shift = unit;
       for (double& entry : shift) entry *= map_.inverse_root_mass(b);
-      const Block turn = lever(b, index(number_[other]));
+      const Block turn = lever(b, index(member_of[other]));
       add_triple_product<D>(left.data(), value, shift.data(), at(linear_node(b)));
       add_triple_product<D>(left.data(), value, turn.data(), at(b));
     }

@@ -4,7 +4,7 @@
 //   particles N from counts, densities and layers;  edges E = N/2 (N/V) S_d r_c^d, S_d the volume of the unit ball, less pairs
 //   inside a body
 //   bytes = 45e6 + 1110 N + 204 E (2D),  45e6 + 1980 N + 230 E (3D)
-//         + 65 N + 150 N_s + 250 B (2D), 110 N + 60 N_s + 250 B (3D) with B free bodies of N_s sites in all
+//         + 65 N + 150 N_c + 250 B (2D), 110 N + 60 N_c + 250 B (3D) with B free bodies of N_c constituents in all
 //
 // The coefficients are those of the largest resident memory of runs with pcg and trapezoidal (docs/performance.md).
 #include "odpd/scene/scene_settings.h"

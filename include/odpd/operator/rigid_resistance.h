@@ -79,9 +79,8 @@ class RigidResistance : public System {
   Resistance<D> mobile_;
   const DofMap<D>* dofs_ = nullptr;
   RigidMap<D> map_;
-  std::vector<std::int32_t> node_;    // per mobile particle: its node, or -(body + 1)
-  std::vector<std::int32_t> number_;  // per mobile particle of a body: its number in map_
-  std::vector<double> root_mass_;     // per body
+  std::vector<std::int32_t> node_;  // per mobile particle: its node, or -(body + 1)
+  std::vector<double> root_mass_;   // per body
   std::vector<std::vector<double>> null_motions_;
   mutable std::vector<double> velocity_, force_;  // of the mobile particles, in apply
   mutable BlockCsr matrix_;

@@ -42,7 +42,8 @@ void turn_at_random(const std::array<double, 4>& u, Rotation<3>& orientation);
 
 /// Adds all bodies to the particles, those of unknown motion first, each [[body]] in turn, and returns for each body of the
 /// particles the index of its [[body]]. Random places (scene/random_places.h) lie between `low` and `high`; bodies at
-/// `positions` stay there. Throws ConfigError where there is no room, with the share of it that was found. Without `at_random` those without `positions` are left at `low`, for move_bodies.
+/// `positions` stay there. Without `at_random` those without `positions` are left at `low`, for move_bodies. Throws ConfigError
+/// where there is no room, with the share of it that was found.
 template <int D>
 std::vector<std::size_t> place_bodies(const std::vector<BodySettings<D>>& settings,
                                       const Box<D>& box, const Vec<D>& low, const Vec<D>& high,
