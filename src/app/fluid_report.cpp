@@ -61,6 +61,7 @@ Named asked_values(const PhysicalInputs& in) {
   };
   add("eta", in.eta);
   add("Sc", in.Sc);
+  add("tau_P", in.tau_P);
   add("alpha", in.alpha);
   add("kappa_inverse", in.kappa_inverse);
   return values;
@@ -77,6 +78,9 @@ Named kinetic_values(const Scene<D>& scene, const KineticTheory& k) {
           {"Sc", k.Sc},
           {"rho", k.rho},
           {"diffusion", k.diffusion},
+          {"tau_P", k.tau_P},
+          {"w_0", k.w_0},
+          {"l_0", k.l_0},
           {"pressure", k.pressure},
           {"bulk_modulus", k.bulk_modulus},
           {"speed_of_sound", k.speed_of_sound},

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "odpd/pairs/physical_inputs.h"
+
 namespace odpd {
 
 namespace {
@@ -49,6 +51,9 @@ KineticTheory kinetic_theory(const std::vector<PairMoments>& pairs,
   k.diffusion = kT > 0.0 ? D * kT / (n * mean.drag) : 0.0;
   k.eta_kinetic = mass > 0.0 ? 0.5 * k.rho * k.diffusion : 0.0;
   const double inertia = k.rho * k.diffusion;
+  k.w_0 = mass > 0.0 ? n * mean.drag / (D * mass) : infinity;
+  k.l_0 = mass > 0.0 ? std::sqrt(kT / mass) / k.w_0 : 0.0;
+  k.tau_P = diffusion_time<D>(kT, k.diffusion, k.eta_friction);
   k.Sc = inertia > 0.0 ? k.eta() / inertia : infinity;
   k.alpha = mass > 0.0 ? mean.alpha_mass / mass : infinity;
   k.energy = 0.5 * n * mean.energy;

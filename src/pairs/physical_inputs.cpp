@@ -3,9 +3,21 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace odpd {
+
+template <>
+double diffusion_time<2>(double, double, double) {
+  return std::nan("");
+}
+template <>
+double diffusion_time<3>(double kT, double diffusion, double eta) {
+  if (diffusion == 0.0) return std::numeric_limits<double>::infinity();
+  const double radius = kT / (6.0 * std::numbers::pi * diffusion * eta);
+  return radius * radius / diffusion;
+}
 
 namespace {
 
@@ -40,10 +52,12 @@ void require_positive(const std::optional<double>& value, const char* key) {
 void validate(const PhysicalInputs& in, double kT, double mass) {
   require_positive(in.eta, "eta");
   require_positive(in.Sc, "Sc");
+  require_positive(in.tau_P, "tau_P");
   require_positive(in.alpha, "alpha");
   require_positive(in.kappa_inverse, "kappa_inverse");
   require(in.eta || !in.any(), "eta",
-          "physical inputs begin with the viscosity: give eta with Sc, alpha and kappa_inverse, or "
+          "physical inputs begin with the viscosity: give eta with Sc or tau_P, alpha and "
+          "kappa_inverse, or "
           "give gamma, s, a and s_bar instead of them");
   require(!in.Sc || mass > 0.0, "Sc",
           "the Schmidt number eta/(rho D) is infinite at mass = 0: leave it out and give s "
@@ -52,6 +66,8 @@ void validate(const PhysicalInputs& in, double kT, double mass) {
           "a = gamma^2 r_c/(alpha m) (thesis 3.5) diverges at mass = 0: give a, or kappa_inverse "
           "with s_bar, or give a mass");
   require(!in.Sc || kT > 0.0, "Sc", "nothing diffuses at kT = 0: leave it out and give s");
+  require(!in.tau_P || kT > 0.0, "tau_P", "nothing diffuses at kT = 0: leave it out and give s");
+  require(!in.tau_P || !in.Sc, "tau_P", "both it and Sc set s: give one of the two");
   if (!in.kappa_inverse) return;
   require(kT > 0.0, "kappa_inverse", "it is dp/dn over kT, and kT is 0: give a and s_bar");
   require(*in.kappa_inverse > 1.0, "kappa_inverse",
@@ -59,17 +75,40 @@ void validate(const PhysicalInputs& in, double kT, double mass) {
                       *in.kappa_inverse));
 }
 
-// (s + d + 1)(s + d + 2) = c, (3.13) and (3.17).
+// (s + d + 1)(s + d + 2) = c, (3.13), (3.17) and (4.48), where kT n r_c^2/(eta D) = x.
+template <int D>
+double exponent_of(double x) {
+  const double c = x * D * (D + 1) / (2.0 * (D + 2));
+  return 0.5 * (std::sqrt(1.0 + 4.0 * c) - (2 * D + 3));
+}
+
+// x at s = 0.
+template <int D>
+constexpr double smallest_x = 2.0 * (D + 2) * (D + 2) / D;
+
 template <int D>
 double friction_exponent(const PhysicalInputs& in, const DpdParameters& p, double n, double mass) {
   const double unit = mass * p.kT * n * n * p.cutoff * p.cutoff / (*in.eta * *in.eta);
-  const double smallest = 2.0 * (D + 2) * (D + 2) / (D * unit);
+  const double smallest = smallest_x<D> / unit;
   require(*in.Sc > smallest, "Sc",
           fmt::format("{} is too small for eta = {}, s would not be positive: it must be above "
                       "{:.6g} (thesis 3.16, 3.20); or lower eta, or raise mass, density or cutoff",
                       *in.Sc, *in.eta, smallest));
-  const double c = *in.Sc * unit * D * (D + 1) / (2.0 * (D + 2));
-  return 0.5 * (std::sqrt(1.0 + 4.0 * c) - (2 * D + 3));
+  return exponent_of<D>(*in.Sc * unit);
+}
+
+template <int D>
+double friction_exponent_by_time(const PhysicalInputs& in, const DpdParameters& p, double n) {
+  const double reach = n * p.cutoff * p.cutoff * p.kT / *in.eta;  // x D
+  const double shortest = diffusion_time<D>(p.kT, reach / smallest_x<D>, *in.eta);
+  require(!std::isnan(shortest), "tau_P",
+          "it needs the radius kT/(6 pi D eta), which there is in 3D only: give Sc or s");
+  require(*in.tau_P > shortest, "tau_P",
+          fmt::format("{} is too short for eta = {}, s would not be positive: it must be above "
+                      "{:.6g} (thesis 4.50); or lower eta, or raise density or cutoff",
+                      *in.tau_P, *in.eta, shortest));
+  // tau_P goes with 1/D^3.
+  return exponent_of<D>(smallest_x<D> * std::cbrt(*in.tau_P / shortest));
 }
 
 template <int D>
@@ -107,6 +146,7 @@ DpdParameters dpd_parameters(const PhysicalInputs& in, const DpdParameters& base
   DpdParameters p = base;
   validate(in, p.kT, mass);
   if (in.Sc) p.s = friction_exponent<D>(in, p, n, mass);
+  if (in.tau_P) p.s = friction_exponent_by_time<D>(in, p, n);
   if (in.eta) p.gamma = *in.eta * 2.0 * D * (D + 2) / (n * n * weight_moment<D>(2, p.s, p.cutoff));
   if (in.alpha) p.a = p.gamma * p.gamma * p.cutoff / (*in.alpha * mass);
   if (in.kappa_inverse) set_compressibility<D>(in, n, p);

@@ -28,10 +28,12 @@ PhysicalInputs read_physical_inputs(const Config& fluid) {
   PhysicalInputs in;
   in.eta = read_optional(fluid, "eta");
   in.Sc = read_optional(fluid, "Sc");
+  in.tau_P = read_optional(fluid, "tau_P");
   in.alpha = read_optional(fluid, "alpha");
   in.kappa_inverse = read_optional(fluid, "kappa_inverse");
   refuse_with(fluid, "eta", {"gamma", "sigma"});
   refuse_with(fluid, "Sc", {"s"});
+  refuse_with(fluid, "tau_P", {"s", "Sc"});
   refuse_with(fluid, "alpha", {"a"});
   if (in.any() && fluid.has("gamma_perp"))
     fluid.fail("gamma_perp",
@@ -55,7 +57,7 @@ DpdParameters read_physical_fluid(const Config& fluid, const PhysicalInputs& in,
   DpdParameters base;
   base.kT = fluid.non_negative("kT");
   base.cutoff = fluid.positive("cutoff", base.cutoff);
-  if (!in.Sc) base.s = fluid.non_negative("s", base.s);
+  if (!in.Sc && !in.tau_P) base.s = fluid.non_negative("s", base.s);
   if (!in.alpha && !in.keep_s_bar) base.a = fluid.non_negative("a");
   if (!in.kappa_inverse || in.keep_s_bar) base.s_bar = fluid.positive("s_bar", base.s_bar);
   try {
@@ -66,7 +68,7 @@ DpdParameters read_physical_fluid(const Config& fluid, const PhysicalInputs& in,
 }
 
 void refuse_physical_inputs(const Config& fluid, const std::string& model) {
-  for (const char* key : {"eta", "Sc", "alpha", "kappa_inverse", "calibration"})
+  for (const char* key : {"eta", "Sc", "tau_P", "alpha", "kappa_inverse", "calibration"})
     if (fluid.gives(key))
       fluid.fail(key,
                  fmt::format("physical inputs and calibrations are of fluid.model = \"dpd\", this "

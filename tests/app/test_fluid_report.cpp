@@ -26,12 +26,13 @@ void expect_words(const std::string& text, std::initializer_list<const char*> wo
 
 TEST(FluidReport, OfDpd) {
   const Scene<2> scene(box_of(odpd::make_dpd<2>({})));
-  expect_words(
-      odpd::fluid_text(scene, Results{}),
-      {"DPD parameters", "a = 18.5", "eta_friction = 2.87231", "pressure = 42.7463",
-       "energy_per_particle = 9.68658", "step_limit = 0.0486486", "cutoff = 1", "Sc = infinite"});
+  expect_words(odpd::fluid_text(scene, Results{}),
+               {"DPD parameters", "a = 18.5", "eta_friction = 2.87231", "pressure = 42.7463",
+                "energy_per_particle = 9.68658", "step_limit = 0.0486486", "cutoff = 1",
+                "Sc = infinite", "w_0 = infinite", "l_0 = 0", "tau_P = undefined"});
   expect_words(odpd::fluid_json(scene, Results{}).text(),
-               {"\"dpd\"", "\"asked_for\"", "\"kinetic_theory\"", "\"Sc\": null"});
+               {"\"dpd\"", "\"asked_for\"", "\"kinetic_theory\"", "\"Sc\": null", "\"tau_P\": null",
+                "\"l_0\": 0"});
 }
 
 TEST(FluidReport, OfAModelOfOnesOwn) {

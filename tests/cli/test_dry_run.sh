@@ -42,6 +42,7 @@ expect_exit 0 "$odpd" run level --dry-run --set fluid.mass=2.0 --set fluid.cutof
 expect_text "$out_text" 'density = 4 mass = 2' 'gamma = 2.93753'
 expect_error 1 "$odpd" run level --dry-run --set fluid.mass=2.0 --set fluid.cutoff=2.0 --set fluid.Sc=100.0 -- \
   '--set fluid.Sc' 'too small' '3.20'
+expect_error 1 "$odpd" run level --dry-run --set fluid.mass=2.0 --set fluid.tau_P=1.0 -- '--set fluid.tau_P' '3D only'
 
 # Every case that comes with the program is in order.
 for case in "$source_root"/cases/*/case.toml; do

@@ -52,7 +52,7 @@ TEST(PairRegistry, PairsOfSpeciesOverride) {
 }
 
 TEST(PairRegistry, PhysicalInputsAreOfDpd) {
-  for (const char* key : {"eta", "Sc", "alpha", "kappa_inverse"}) {
+  for (const char* key : {"eta", "Sc", "tau_P", "alpha", "kappa_inverse"}) {
     const Config config =
         Config::from_text(standard_fluid + std::string(key) + " = 3.0\n", "case.toml");
     expect_error<ConfigError>(

@@ -1,5 +1,5 @@
 // The formulas of physical inputs against integrals done by quadrature, their inverses, and the numbers printed in
-// Nguyen 2021, chapter 3. Water there: kappa^-1 = 15.98.
+// Nguyen 2021, chapters 3 and 4. Water there: kappa^-1 = 15.98.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,6 +81,8 @@ TYPED_TEST(PhysicalInputsIn, KineticTheoryIsItsIntegrals) {
   EXPECT_NEAR(k.eta_kinetic, 0.5 * n * m * k.diffusion, 1e-12);
   EXPECT_NEAR(k.Sc, k.eta() / (n * m * k.diffusion), 1e-9 * k.Sc);
   EXPECT_NEAR(k.alpha, p.gamma * p.gamma * p.cutoff / (m * p.a), 1e-12 * k.alpha);
+  EXPECT_NEAR(k.w_0, n * drag / (D * m), 1e-6 * k.w_0);
+  EXPECT_NEAR(k.l_0, std::sqrt(kT / m) / k.w_0, 1e-12 * k.l_0);
   EXPECT_NEAR(k.speed_of_sound * k.speed_of_sound * m, k.kappa_inverse * kT, 1e-9);
   EXPECT_NEAR(k.bulk_modulus, n * kT * k.kappa_inverse, 1e-9);
   EXPECT_EQ(k.rho, n * m);
@@ -152,6 +154,12 @@ TYPED_TEST(PhysicalInputsIn, RefusesWhatTheFormulasCannotGive) {
   in.Sc = 1e6;
   refuse(in, 1.0, 0.0, {"Sc", "infinite at mass = 0"});
   refuse(in, 0.0, 1.0, {"Sc", "kT = 0"});
+  in.tau_P = 1.0;
+  refuse(in, 1.0, 1.0, {"tau_P", "Sc", "one of the two"});
+  in.Sc.reset();
+  refuse(in, 0.0, 1.0, {"tau_P", "kT = 0"});
+  in.tau_P = -1.0;
+  refuse(in, 1.0, 1.0, {"tau_P", "positive"});
 }
 
 TYPED_TEST(PhysicalInputsIn, WithoutMassEtaAndCompressibilityStillSetTheFluid) {
@@ -229,6 +237,104 @@ TEST(PhysicalInputs, ThesisStandardFluidReadBackwards) {
   // It is water: the thesis chose a so. (3.37) is the same kinetic part.
   EXPECT_NEAR(k.kappa_inverse, water, 2e-3);
   EXPECT_NEAR(k.eta_kinetic, 0.6 * 4.0 * 4.0 * 2.25 / (k.eta_friction * 4.5 * 5.5), 1e-12);
+}
+
+PhysicalInputs with_number(double eta, double Sc) {
+  PhysicalInputs in;
+  in.eta = eta;
+  in.Sc = Sc;
+  return in;
+}
+
+PhysicalInputs with_time(double eta, double tau_P) {
+  PhysicalInputs in;
+  in.eta = eta;
+  in.tau_P = tau_P;
+  return in;
+}
+
+/// gamma and s of the thesis' fluids with m = 1, n = 4, r_c = 1.5.
+DpdParameters of_chapter_4(const PhysicalInputs& in, double kT = 1.0) {
+  return dpd_parameters<3>(in, with_cutoff(1.5, kT), 4.0, 1.0);
+}
+
+/// (4.52) with rho = 4.
+double time_of(double eta, double Sc, double kT) {
+  return std::pow(4.0 * Sc, 3) * kT * kT /
+         (36.0 * std::pow(std::numbers::pi, 2) * std::pow(eta, 5));
+}
+
+TEST(PhysicalInputs, ThesisTable41BySchmidtNumberAndByDiffusionTime) {
+  const struct {
+    double eta, Sc, gamma, s;
+  } rows[] = {{30.0, 500.0, 6.9710, 0.4244},  {28.0, 500.0, 11.7110, 0.7727},
+              {26.0, 500.0, 19.6042, 1.1747}, {24.0, 500.0, 32.9714, 1.6441},
+              {30.0, 600.0, 15.0263, 0.8898}, {30.0, 700.0, 27.4087, 1.3181},
+              {30.0, 800.0, 44.9254, 1.7169}};
+  for (const auto& row : rows) {
+    const DpdParameters by_number = of_chapter_4(with_number(row.eta, row.Sc));
+    EXPECT_NEAR(by_number.gamma, row.gamma, 5e-5);
+    EXPECT_NEAR(by_number.s, row.s, 5e-5);
+    const double tau_P = time_of(row.eta, row.Sc, 1.0);
+    const DpdParameters by_time = of_chapter_4(with_time(row.eta, tau_P));
+    EXPECT_NEAR(by_time.gamma, row.gamma, 5e-5);
+    EXPECT_NEAR(by_time.s, row.s, 5e-5);
+    const KineticTheory k = kinetic_theory<3>(by_time, 4.0, 1.0);
+    EXPECT_NEAR(k.tau_P, tau_P, 1e-9 * tau_P);
+    EXPECT_NEAR(k.eta_friction, row.eta, 1e-9 * row.eta);
+  }
+}
+
+// "tau_P = (0.93, 1.12, 1.33, 1.57, 1.82)" at five temperatures of rho = 4, Sc = 500, eta = 30.
+TEST(PhysicalInputs, ThesisDiffusionTimesOfFigure48) {
+  const double kT[] = {1.0, 1.1, 1.2, 1.3, 1.4}, printed[] = {0.93, 1.12, 1.33, 1.57, 1.82};
+  for (int k = 0; k < 5; ++k) {
+    const DpdParameters p = of_chapter_4(with_number(30.0, 500.0), kT[k]);
+    EXPECT_NEAR(kinetic_theory<3>(p, 4.0, 1.0).tau_P, printed[k], 5e-3);
+  }
+}
+
+// Section 4.1: sigma = 3 and n = 3, 4 have l_0 = 0.5305, 0.3979 at s = 2 and 0.1161, 0.087 at s = 1/2; section 4.6:
+// gamma = 6.97 and s = 0.42 have 0.0149.
+TEST(PhysicalInputs, ThesisCorrelationLengths) {
+  const double rows[][3] = {
+      {3.0, 2.0, 0.5305}, {4.0, 2.0, 0.3979}, {3.0, 0.5, 0.1161}, {4.0, 0.5, 0.0870}};
+  for (const auto& [n, s, printed] : rows) {
+    DpdParameters p = with_cutoff(1.0);
+    p.s = s;
+    EXPECT_NEAR(kinetic_theory<3>(p, n, 1.0).l_0, printed, 5e-5);
+  }
+  DpdParameters p = with_cutoff(1.5);
+  p.gamma = 6.97;
+  p.s = 0.42;
+  EXPECT_NEAR(kinetic_theory<3>(p, 4.0, 1.0).l_0, 0.0149, 5e-5);
+}
+
+// (4.50), also where kT, n and r_c are none of them 1; and (4.47) of the fluid that comes out, of any mass.
+TEST(PhysicalInputs, DiffusionTimeNeedsNoMassButThreeDimensions) {
+  const double n = 5.0, eta = 12.0, kT = 0.8;
+  const DpdParameters base = with_cutoff(1.3, kT);
+  const double pi_squared = std::pow(std::numbers::pi, 2);
+  const double shortest =
+      31250.0 * eta / (243.0 * pi_squared * kT * std::pow(n, 3) * std::pow(1.3, 6));
+  PhysicalInputs in = with_time(eta, shortest * (1.0 + 1e-9));
+  EXPECT_NEAR(dpd_parameters<3>(in, base, n, 0.0).s, 0.0, 1e-8);
+  expect_error<PhysicalInputError>(
+      [&] { dpd_parameters<3>(with_time(eta, shortest * (1.0 - 1e-9)), base, n, 0.0); },
+      {"tau_P", "too short", "4.50"});
+  in.tau_P = 3.0 * shortest;
+  const DpdParameters p = dpd_parameters<3>(in, base, n, 0.0);
+  EXPECT_EQ(dpd_parameters<3>(in, base, n, 2.0).s, p.s);
+  const double drag = 8.0 * std::numbers::pi * std::pow(1.3, 3) * p.gamma * n /
+                      (3.0 * kT * (p.s + 1.0) * (p.s + 2.0) * (p.s + 3.0));
+  EXPECT_NEAR(kT * kT / (36.0 * pi_squared * eta * eta) * std::pow(drag, 3), 3.0 * shortest,
+              1e-9 * shortest);
+  EXPECT_NEAR(kinetic_theory<3>(p, n, 0.0).tau_P, 3.0 * shortest, 1e-9 * shortest);
+  expect_error<PhysicalInputError>([&] { dpd_parameters<2>(in, base, n, 1.0); },
+                                   {"tau_P", "3D only", "Sc or s"});
+  EXPECT_TRUE(std::isnan(kinetic_theory<2>(p, n, 1.0).tau_P));
+  EXPECT_TRUE(std::isinf(kinetic_theory<3>(p, n, 0.0).w_0));
+  EXPECT_EQ(kinetic_theory<3>(p, n, 0.0).l_0, 0.0);
 }
 
 // Levels of one fluid by evaluating the formulas at another n, r_c and m; (3.22) would change eta (3.36).

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "cases.h"
 #include "odpd/pairs/bonds.h"
 #include "odpd/scene/scene.h"
@@ -165,6 +168,48 @@ a = 60.0
     if (i != colloid && p.is_free(i))
       nearest = std::min(nearest, norm(scene.box().separation(p.position[i], p.position[colloid])));
   EXPECT_GT(nearest, 0.6);
+}
+
+// Nguyen 2021, table 5.1: octahedra of six, 3^3 to 13^3 of them, beside 13500 particles of the solvent in a cube of 15, as a
+// case has them. Its volume fraction is a fraction of particles; the distances are (5.4) and (5.3).
+TEST(Molecules, ThesisTable51) {
+  const struct {
+    double phi, sphere, cube;
+  } rows[] = {{0.0119, 3.1018, 5.0000}, {0.0277, 2.3263, 3.7500}, {0.0526, 1.8611, 3.0000},
+              {0.0876, 1.5509, 2.5000}, {0.1323, 1.3293, 2.1429}, {0.1854, 1.1632, 1.8750},
+              {0.2447, 1.0339, 1.6667}, {0.3077, 0.9305, 1.5000}, {0.3717, 0.8459, 1.3636},
+              {0.4344, 0.7754, 1.2500}, {0.4940, 0.7158, 1.1538}};
+  std::int64_t edge = 3;
+  for (const auto& row : rows) {
+    const auto s = cases::settings<3>(R"(
+[box]
+size = [15.0, 15.0, 15.0]
+periodic = [true, true, true]
+[fluid]
+density = 4.0
+mass = 1.0
+kT = 1.0
+cutoff = 1.5
+a = 3.53
+gamma = 6.97
+s = 0.42
+[[molecule]]
+name = "octahedron"
+shape = "points"
+points = [{ at = [0.2, 0.0, 0.0] }, { at = [-0.2, 0.0, 0.0] }, { at = [0.0, 0.2, 0.0] },
+          { at = [0.0, -0.2, 0.0] }, { at = [0.0, 0.0, 0.2] }, { at = [0.0, 0.0, -0.2] }]
+species = "fluid"
+bonds = "sites"
+H = 1000.0
+count = )" + std::to_string(edge * edge * edge));
+    ++edge;
+    const double solvent = s.density * s.fluid_volume();
+    const auto beads = static_cast<double>(s.molecule_beads());
+    const double volume = s.fluid_volume() / static_cast<double>(s.molecules[0].molecules());
+    EXPECT_NEAR(beads / (beads + solvent), row.phi, 5e-5);
+    EXPECT_NEAR(std::cbrt(3.0 * volume / (4.0 * std::numbers::pi)), row.sphere, 5e-5);
+    EXPECT_NEAR(std::cbrt(volume), row.cube, 5e-5);
+  }
 }
 
 }  // namespace

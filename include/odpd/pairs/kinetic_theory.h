@@ -6,6 +6,9 @@
 //   viscosity  eta = n^2 [r^2 (zeta_par + (d + 1) zeta_perp)]/(2 d (d+2)) + rho D/2
 //   diffusion  D = d kT/(n [zeta_par + (d - 1) zeta_perp]),  rho = n m
 //
+//   collisions w_0 = n [zeta_par + (d - 1) zeta_perp]/(d m),  l_0 = sqrt(kT/m)/w_0    (thesis 4.1, 4.2)
+//   time       tau_P = R^2/D,  R = kT/(6 pi D eta_friction), 3D               (4.43) to (4.45)
+//
 // and in a mixture the means of [...] over the pairs of species at random.
 #include <vector>
 
@@ -13,14 +16,17 @@
 
 namespace odpd {
 
-/// What kinetic theory says of a fluid. Infinite: Sc, alpha and speed_of_sound at mass = 0, alpha without force,
-/// diffusion without friction, kappa_inverse at kT = 0. Not a number: undefined, where an integral diverges.
+/// What kinetic theory says of a fluid. Infinite: Sc, alpha, w_0 and speed_of_sound at mass = 0, alpha without force,
+/// diffusion without friction, kappa_inverse and tau_P at kT = 0. Not a number: undefined, where an integral diverges, and tau_P in 2D.
 struct KineticTheory {
   double rho = 0.0;           ///< n m (mass/length^d)
   double eta_friction = 0.0;  ///< (3.8); an upper bound on that of friction alone
   double eta_kinetic = 0.0;   ///< rho D/2 (3.12)
   double diffusion = 0.0;     ///< D, of friction alone (length^2/time)
   double Sc = 0.0;            ///< eta()/(rho D): 1/2 above that of eta_friction
+  double w_0 = 0.0;           ///< at which a particle forgets its velocity (1/time)
+  double l_0 = 0.0;           ///< how far it gets in 1/w_0 at its thermal velocity (length)
+  double tau_P = 0.0;         ///< in which it diffuses by its Stokes-Einstein radius (time)
   double alpha =
       0.0;  ///< largest zeta^2 r_e/(m |f_c|), of the pair of species where it is least (3.3)
   double energy = 0.0;          ///< per particle

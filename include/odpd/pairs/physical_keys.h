@@ -1,12 +1,12 @@
 #pragma once
-// The keys of [fluid] that describe it by physical properties: eta, Sc, alpha, kappa_inverse.
+// The keys of [fluid] that describe it by physical properties: eta, Sc, tau_P, alpha, kappa_inverse.
 #include "odpd/core/config.h"
 #include "odpd/pairs/physical_inputs.h"
 
 namespace odpd {
 
 /// The physical inputs that [fluid] gives; none is in order. Throws ConfigError where DPD parameters that follow from
-/// them are given too (eta with gamma or sigma, Sc with s, alpha with a, ...), or one is missing.
+/// them are given too (eta with gamma or sigma, Sc or tau_P with s, alpha with a, ...), or one is missing.
 PhysicalInputs read_physical_inputs(const Config& fluid);
 
 /// DPD parameters by physical inputs (`inputs.any()`); the parameters that they leave open, and kT and cutoff, are read
