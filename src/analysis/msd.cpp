@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/analysis/observer_keys.h"
 #include "odpd/core/index.h"
 
 namespace odpd {
@@ -18,35 +19,22 @@ MsdSettings read_msd(const ObserverEntry<D>& entry) {
   m.fit_from = config.non_negative("fit_from", m.window / 3.0);
   if (m.fit_from >= m.window) config.fail("fit_from", "must be less than window");
   // Along a bounded direction displacements saturate; along a moving wall or a force they are advection.
-  std::vector<std::string> names, fallback;
-  for (int c = 0; c < D; ++c) {
-    names.emplace_back(1, "xyz"[c]);
-    bool flows = scene.settings().forces_along(c) || !scene.box().is_periodic(c);
-    for (const auto& wall : scene.settings().walls) flows = flows || wall.velocity[c] != 0.0;
-    const auto& shear = scene.box().shear;
-    flows = flows || (shear && shear->flow == c);
-    for (const auto& body : scene.settings().bodies)
-      flows = flows || body.velocity.velocity[c] != 0.0 || body.load.force[c] != 0.0;
-    if (!flows) fallback.push_back(names.back());
-  }
+  std::vector<int> fallback;
+  for (int c = 0; c < D; ++c)
+    if (!flows_along(scene, c) && scene.box().is_periodic(c)) fallback.push_back(c);
   if (fallback.empty())
     for (int c = 0; c < D; ++c)
-      if (!scene.box().is_periodic(c)) fallback.push_back(names[index(c)]);
+      if (!scene.box().is_periodic(c)) fallback.push_back(c);
   if (fallback.empty())
     for (int c = 0; c < D; ++c)
-      if (!scene.box().shear || scene.box().shear->flow != c) fallback.push_back(names[index(c)]);
-  for (const std::string& name : config.texts("directions", fallback)) {
-    const auto at = std::find(names.begin(), names.end(), name);
-    if (at == names.end())
-      config.fail("directions", fmt::format("there is no direction '{}'", name));
-    m.directions.push_back(static_cast<int>(at - names.begin()));
-    if (scene.box().shear && scene.box().shear->flow == m.directions.back())
+      if (!scene.box().shear || scene.box().shear->flow != c) fallback.push_back(c);
+  m.directions = read_directions<D>(config, fallback);
+  for (const int c : m.directions)
+    if (scene.box().shear && scene.box().shear->flow == c)
       config.fail("directions",
                   fmt::format("{} is the flow direction of [shear]: displacements along it are "
                               "advection, and jump where a particle crosses a sliding face",
-                              name));
-  }
-  if (m.directions.empty()) config.fail("directions", "at least one direction is needed");
+                              "xyz"[c]));
   return m;
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "odpd/core/index.h"
+
 namespace odpd {
 
 template <int D>
@@ -33,6 +35,33 @@ int default_axis(const Scene<D>& scene) {
 template <int D>
 int read_axis(const ObserverEntry<D>& entry) {
   return read_direction<D>(entry.config, "axis", default_axis(entry.scene));
+}
+
+template <int D>
+bool flows_along(const Scene<D>& scene, int direction) {
+  const SceneSettings<D>& s = scene.settings();
+  const auto& shear = scene.box().shear;
+  bool flows = s.forces_along(direction) || (shear && shear->flow == direction);
+  for (const auto& wall : s.walls) flows = flows || wall.velocity[direction] != 0.0;
+  for (const auto& body : s.bodies)
+    flows = flows || body.velocity.velocity[direction] != 0.0 || body.load.force[direction] != 0.0;
+  return flows;
+}
+
+template <int D>
+std::vector<int> read_directions(const Config& config, const std::vector<int>& fallback) {
+  std::vector<std::string> names, texts;
+  for (int c = 0; c < D; ++c) names.emplace_back(1, "xyz"[c]);
+  for (const int c : fallback) texts.push_back(names[index(c)]);
+  std::vector<int> directions;
+  for (const std::string& name : config.texts("directions", texts)) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end())
+      config.fail("directions", fmt::format("there is no direction '{}'", name));
+    directions.push_back(static_cast<int>(at - names.begin()));
+  }
+  if (directions.empty()) config.fail("directions", "at least one direction is needed");
+  return directions;
 }
 
 template <int D>
@@ -66,10 +95,12 @@ double read_r_max(const ObserverEntry<D>& entry) {
   return r_max;
 }
 
-#define ODPD_INSTANTIATE(D)                                                         \
-  template int read_direction<D>(const Config&, const std::string&, int);           \
-  template int read_axis<D>(const ObserverEntry<D>&);                               \
-  template typename Grid<D>::Counts read_cells<D>(const ObserverEntry<D>&, double); \
+#define ODPD_INSTANTIATE(D)                                                             \
+  template int read_direction<D>(const Config&, const std::string&, int);               \
+  template int read_axis<D>(const ObserverEntry<D>&);                                   \
+  template bool flows_along<D>(const Scene<D>&, int);                                   \
+  template std::vector<int> read_directions<D>(const Config&, const std::vector<int>&); \
+  template typename Grid<D>::Counts read_cells<D>(const ObserverEntry<D>&, double);     \
   template double read_r_max<D>(const ObserverEntry<D>&);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)

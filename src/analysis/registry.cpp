@@ -14,6 +14,7 @@
 #include "odpd/analysis/rdf.h"
 #include "odpd/analysis/stress.h"
 #include "odpd/analysis/thermo.h"
+#include "odpd/analysis/velocities.h"
 #include "odpd/analysis/viscosity.h"
 #include "odpd/analysis/wall_force.h"
 #include "odpd/core/error.h"
@@ -35,6 +36,7 @@ const std::vector<ObserverKind<D>>& observer_kinds() {
       {.name = "bodies", .make = Bodies<D>::make},
       {.name = "viscosity", .make = Viscosity<D>::make, .of_motion = true},
       {.name = "divergence", .make = Divergence<D>::make, .of_motion = true},
+      {.name = "velocities", .make = Velocities<D>::make, .of_motion = true},
       {.name = "molecules", .make = MoleculeStatistics<D>::make}};
   return table;
 }

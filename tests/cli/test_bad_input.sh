@@ -138,6 +138,8 @@ expect_error 1 run box --set 'observe=[{kind="stress", bins=-1}]' -- bins
 expect_error 1 run box --set 'observe=[{kind="viscosity", every=2}]' -- every 'every step'
 expect_error 1 run channel --set 'observe=[{kind="viscosity", window=1.0}]' -- window
 expect_error 1 run box --set fluid.mass=1.0 --set 'observe=[{kind="heat"}]' -- heat fluid.mass
+expect_error 1 run box --set 'observe=[{kind="velocities"}]' -- kind 'mass = 0' fluid.mass
+expect_error 1 run box --set fluid.mass=1.0 --set 'observe=[{kind="velocities", directions=["z"]}]' -- directions "'z'"
 expect_error 1 run box --set 'observe=[{kind="divergence", bins=[2.0, 4.0]}]' -- bins 3
 expect_error 1 run box --set 'shear={rate=1.0}' --set 'observe=[{kind="divergence", bins=[4.0, 4.0]}]' -- kind shear
 expect_error 1 run box --set 'observe=[{kind="profile", fit="sine"}]' -- fit body_force.wave

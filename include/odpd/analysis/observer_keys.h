@@ -1,6 +1,7 @@
 #pragma once
 // Keys that several observers read. All throw ConfigError.
 #include <string>
+#include <vector>
 
 #include "odpd/analysis/grid.h"
 #include "odpd/analysis/observer.h"
@@ -15,6 +16,14 @@ int read_direction(const Config& config, const std::string& key, int fallback);
 /// force varies.
 template <int D>
 int read_axis(const ObserverEntry<D>& entry);
+
+/// Something makes a flow along this direction: a force, a moving wall, shear, a body that is moved or pushed.
+template <int D>
+bool flows_along(const Scene<D>& scene, int direction);
+
+/// `directions`, an array of names.
+template <int D>
+std::vector<int> read_directions(const Config& config, const std::vector<int>& fallback);
 
 /// `bins`, D counts; by default cells near 1 wide, at least `fewest` in every direction.
 template <int D>
