@@ -99,6 +99,10 @@ kind = "viscosity"
 [[observe]]
 kind = "profile"
 bins = 5
+[[observe]]
+kind = "velocities"
+every = 1
+bins = 10
 )"},
                                          {"sheared", R"(
 [shear]
