@@ -29,6 +29,18 @@ std::vector<double> resisted(const Stage<D>& stage, const DofMap<D>& dofs,
   return f;
 }
 
+// Solves that leave no trace in the solver.
+class Unremembered {
+ public:
+  explicit Unremembered(Solver& solver) : solver_(solver) { solver_.remember(false); }
+  ~Unremembered() { solver_.remember(true); }
+  Unremembered(const Unremembered&) = delete;
+  Unremembered& operator=(const Unremembered&) = delete;
+
+ private:
+  Solver& solver_;
+};
+
 }  // namespace
 
 void SolverStatistics::add(const SolveReport& report) {
@@ -258,6 +270,32 @@ void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights
             fmt::format("the velocity of particle {} is not finite", particles_.id[i]),
             particles_.id[i]);
   });
+}
+
+template <int D>
+std::vector<Vec<D>> Dynamics<D>::respond(const Stage<D>& stage, const std::vector<Vec<D>>& force,
+                                         bool again) {
+  const Stopwatch watch;
+  const Unremembered aside(*solver_);
+  const System& system = again ? resistance_.system() : assemble(stage, {});
+  Unknowns load;
+  motion_.dofs().gather(stage.arms, force, load);
+  Unknowns q(load.size(), 0.0);
+  SolveReport report;
+  {
+    const PhaseTimer timer(phases_, Phase::solve);
+    if (!again) solver_->bind(system);
+    resistance_.scale_load(load);
+    report = solver_->solve(load, q);
+    resistance_.unscale_velocity(q);
+  }
+  note(report);
+  const std::vector<Vec<D>> still(stage.position.size());
+  std::vector<Vec<D>> velocity;
+  motion_.dofs().scatter(stage.arms, q, still, velocity);
+  // Observers ask for this while their own time is taken.
+  phases_[Phase::measure] -= watch.seconds();
+  return velocity;
 }
 
 template class Dynamics<2>;

@@ -79,9 +79,11 @@ using S = IntegratorSettings;
 constexpr auto positive = Masses::positive;
 // Every integrator there is.
 constexpr std::array table{
-    row<Trapezoidal, &S::implicit_bonds>("trapezoidal", {.takes_implicit_bonds = true},
+    row<Trapezoidal, &S::implicit_bonds>("trapezoidal",
+                                         {.two_stages = true, .takes_implicit_bonds = true},
                                          {"implicit_bonds", &read_implicit_bonds}),
-    row<Midpoint, &S::implicit_bonds>("midpoint", {.takes_implicit_bonds = true},
+    row<Midpoint, &S::implicit_bonds>("midpoint",
+                                      {.two_stages = true, .takes_implicit_bonds = true},
                                       {"implicit_bonds", &read_implicit_bonds}),
     row<Extrapolated>("extrapolated", {}),
     row<Implicit, &S::theta>("implicit", {.repulsion_limits_dt = false}, {"theta", &read_theta}),

@@ -53,6 +53,11 @@ const StepRecord<D>& TwoStage<D>::step(Dynamics<D>& dynamics, const Clock& clock
     for (std::size_t k = 0; k < q.size(); ++k) p_mid[k] += rest[k];
   }
   this->finish(dynamics, clock, q_mid, p_mid);
+  record.respond = [this, &dynamics, again = false](const std::vector<Vec<D>>& force) mutable {
+    auto velocity = dynamics.respond(this->record_.start, force, again);
+    again = true;
+    return velocity;
+  };
   return record;
 }
 

@@ -24,6 +24,7 @@ class CgEngine {
   virtual std::string note() const { return {}; }
   virtual void save(StateWriter&) const {}
   virtual void load(const StateReader&) {}
+  virtual void remember(bool /*on*/) {}
 };
 
 /// Null unless the system is a Resistance or a RigidResistance.

@@ -35,6 +35,7 @@ class MixedCg : public CgEngine {
   std::string note() const override { return note_; }
   void save(StateWriter& out) const override { grid_.save(out); }
   void load(const StateReader& in) override { grid_.load(in); }
+  void remember(bool on) override { grid_.remember(on); }
 
  private:
   static constexpr std::int64_t slice_places = 16;

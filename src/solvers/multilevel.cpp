@@ -49,7 +49,7 @@ void Multilevel<D>::set_up(const Resistance<D>& resistance, const SlicedRows<D>&
   const bool outdated =
       grid_.empty() || grid_.null_translations() != resistance.translations_are_null() ||
       shift_ != resistance.shift() || stiffness_time_ != resistance.stiffness_time();
-  if (outdated || last_rate_ < aged * fresh_rate_) build(resistance, rigid);
+  if (outdated || (remembers_ && last_rate_ < aged * fresh_rate_)) build(resistance, rigid);
   place_nodes(resistance, rows);
 }
 
@@ -62,6 +62,7 @@ LocalPart Multilevel<D>::local() const {
 
 template <int D>
 void Multilevel<D>::note_rate(double decades_per_iteration) {
+  if (!remembers_) return;
   last_rate_ = decades_per_iteration;
   if (fresh_rate_ == 0.0) fresh_rate_ = last_rate_;
 }

@@ -125,6 +125,9 @@ class ConjugateGradients : public Solver {
     choose_engine(system);
     if (mixed_) mixed_->load(in);
   }
+  void remember(bool on) override {
+    if (mixed_) mixed_->remember(on);
+  }
 
  private:
   void set_up() override {

@@ -96,6 +96,8 @@ struct IntegratorTraits {
   Masses masses = Masses::any;  ///< that it takes
   /// Steps are steps in time. Otherwise (Monte Carlo sweeps) there are no velocities; only positions mean something.
   bool in_time = true;
+  /// Two solves a step, with the same noise: the record has a corrector and `respond`.
+  bool two_stages = false;
   bool moves_bodies = true;  ///< rigid bodies of unknown motion
   bool runs_sheared = true;  ///< under [shear]
   /// Explicit in the conservative force: its stiffness limits dt.

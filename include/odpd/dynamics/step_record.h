@@ -1,6 +1,7 @@
 #pragma once
 // What one step saw and did, for whoever measures: both stages' edges, forces and velocities, and the random force.
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "odpd/geometry/box.h"
@@ -40,6 +41,12 @@ struct StepRecord {
   std::vector<Vec<D>> edge_noise;
   std::vector<Vec<D>> v_mid;         ///< velocity that moved each particle: displacement/dt
   std::int64_t alarm_crossings = 0;  ///< particles the mirror had to catch in this step
+
+  /// P (P^T R P)^+ P^T f at `start`: the velocities (length/time, one per particle) that a force f on each particle causes
+  /// there besides what acts in the step. One more solve, by the solver of the run, whose later solves it does not touch. A force on all particles alike counts for
+  /// nothing where no drag and no particle of known velocity takes it up. Empty for schemes that are not of two stages; on all
+  /// ranks together. Throws SolverError when the solver did not converge.
+  std::function<std::vector<Vec<D>>(const std::vector<Vec<D>>& force)> respond;
 
   bool has_corrector() const { return start_weight < 1.0; }
 };

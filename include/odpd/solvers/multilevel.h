@@ -42,6 +42,8 @@ class Multilevel {
   /// grid operator, the next set-up builds it anew.
   void note_rate(double decades_per_iteration);
   static constexpr double aged = 0.8;
+  /// false: rates are not noted and no grid ages.
+  void remember(bool on) { remembers_ = on; }
 
   /// The local part, which is the caller's.
   LocalPart local() const;
@@ -71,6 +73,7 @@ class Multilevel {
   Multigrid<D> grid_;
   double shift_ = 0.0, stiffness_time_ = 0.0;  // what the grid operator was built with
   double fresh_rate_ = 0.0, last_rate_ = 0.0;
+  bool remembers_ = true;
   double ties_ = 0.0;  // of FrictionSpread, when the operator was built
   std::int64_t builds_ = 0;
   std::int64_t places_ = 0;

@@ -68,6 +68,9 @@ class Solver {
   /// `system`: of the kind that will be bound.
   virtual void load(const StateReader&, const System& /*system*/) {}
 
+  /// false: until told otherwise, what it remembers stays as it is, so that solves beside those of a run change none of these.
+  virtual void remember(bool /*on*/) {}
+
   Solver(const Solver&) = delete;
   Solver& operator=(const Solver&) = delete;
 
