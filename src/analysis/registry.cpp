@@ -8,6 +8,7 @@
 #include "odpd/analysis/density_residual.h"
 #include "odpd/analysis/divergence.h"
 #include "odpd/analysis/heat.h"
+#include "odpd/analysis/modes.h"
 #include "odpd/analysis/molecules.h"
 #include "odpd/analysis/msd.h"
 #include "odpd/analysis/profile.h"
@@ -37,6 +38,7 @@ const std::vector<ObserverKind<D>>& observer_kinds() {
       {.name = "viscosity", .make = Viscosity<D>::make, .of_motion = true},
       {.name = "divergence", .make = Divergence<D>::make, .of_motion = true},
       {.name = "velocities", .make = Velocities<D>::make, .of_motion = true},
+      {.name = "modes", .make = Modes<D>::make, .of_motion = true},
       {.name = "molecules", .make = MoleculeStatistics<D>::make}};
   return table;
 }
@@ -83,7 +85,7 @@ void check_name(const Config& entry, const std::vector<ObserverKind<D>>& kinds,
 template <int D>
 std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
                                                          const Scene<D>& scene, const Clock& clock,
-                                                         bool steps_are_time,
+                                                         const IntegratorTraits& integrator,
                                                          const std::vector<ObserverKind<D>>& own) {
   const std::vector<ObserverKind<D>> kinds = all_kinds(own);
   std::vector<std::unique_ptr<Observer<D>>> observers;
@@ -91,9 +93,10 @@ std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
     const std::string name = entry.choice("kind", names_of(kinds));
     const auto kind =
         std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.name == name; });
-    observers.push_back(kind->make({name, entry, scene, clock, steps_are_time}));
+    observers.push_back(
+        kind->make({name, entry, scene, clock, integrator.in_time, integrator.two_stages}));
     check_name(entry, kinds, observers);
-    if (!kind->of_motion || steps_are_time) continue;
+    if (!kind->of_motion || integrator.in_time) continue;
     log_warning(fmt::format(
         "observer '{}' is left out: sweeps of monte-carlo are no time and particles have no "
         "velocity, which '{}' measures by",
@@ -104,8 +107,9 @@ std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
   for (const ObserverKind<D>& kind : kinds) {
     const bool there = std::any_of(observers.begin(), observers.end(),
                                    [&](const auto& o) { return o->settings().kind == kind.name; });
-    if (kind.always && !there && (steps_are_time || !kind.of_motion))
-      observers.push_back(kind.make({kind.name, nothing, scene, clock, steps_are_time}));
+    if (kind.always && !there && (integrator.in_time || !kind.of_motion))
+      observers.push_back(
+          kind.make({kind.name, nothing, scene, clock, integrator.in_time, integrator.two_stages}));
   }
   return observers;
 }
@@ -113,8 +117,10 @@ std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
 template const std::vector<ObserverKind<2>>& observer_kinds<2>();
 template const std::vector<ObserverKind<3>>& observer_kinds<3>();
 template std::vector<std::unique_ptr<Observer<2>>> make_observers<2>(
-    const Config&, const Scene<2>&, const Clock&, bool, const std::vector<ObserverKind<2>>&);
+    const Config&, const Scene<2>&, const Clock&, const IntegratorTraits&,
+    const std::vector<ObserverKind<2>>&);
 template std::vector<std::unique_ptr<Observer<3>>> make_observers<3>(
-    const Config&, const Scene<3>&, const Clock&, bool, const std::vector<ObserverKind<3>>&);
+    const Config&, const Scene<3>&, const Clock&, const IntegratorTraits&,
+    const std::vector<ObserverKind<3>>&);
 
 }  // namespace odpd

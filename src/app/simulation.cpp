@@ -47,7 +47,8 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings,
       dynamics_(scene_.box(), scene_.particles(), scene_.model(), scene_,
                 make_solver(settings_.solver), settings_.dynamics),
       integrator_(make_integrator<D>(settings_.integrator)),
-      observers_(make_observers(config, scene_, clock_, in_time(), own_observers)),
+      observers_(make_observers(config, scene_, clock_,
+                                integrator_traits(settings_.integrator.name), own_observers)),
       watch_of_state_(scene_, settings_.blow_up) {
   if (const std::string why = mass_objection(settings_.integrator.name, dynamics_.constants().mass);
       !why.empty())

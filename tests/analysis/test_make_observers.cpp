@@ -45,7 +45,8 @@ TEST_F(MakeObservers, ThermoAndMsdAreAlwaysThere) {
 TEST_F(MakeObservers, WithoutTimeThereIsNoMsd) {
   for (const char* text : {"", "[[observe]]\nkind = \"msd\"\nwindow = 2.0\n"}) {
     const Config config = Config::from_text(text, "case.toml");
-    const auto observers = odpd::make_observers<2>(config, scene, odpd::Clock{.dt = 1.0}, false);
+    const auto observers = odpd::make_observers<2>(config, scene, odpd::Clock{.dt = 1.0},
+                                                   odpd::integrator_traits("monte-carlo"));
     config.reject_unread();
     ASSERT_EQ(observers.size(), 1u);
     EXPECT_EQ(observers[0]->settings().kind, "thermo");

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <utility>
 
 #include "odpd/analysis/registry.h"
 #include "odpd/dynamics/integrator.h"
@@ -24,7 +22,7 @@ using odpd::Scene;
 using Observers = std::vector<std::unique_ptr<Observer<2>>>;
 
 /// A scene in which every kind finds what it measures: moving walls, a free body, a molecule.
-odpd::SceneSettings<2> everything(double mass) {
+odpd::SceneSettings<2> everything(double mass = 0.0) {
   const Config config = Config::from_text(R"(
     [box]
     size = [6.0, 8.0]
@@ -65,6 +63,27 @@ odpd::SceneSettings<2> everything(double mass) {
   return odpd::read_scene_settings<2>(config);
 }
 
+/// A fluid at rest with a free body, for kinds that a wall stops.
+odpd::SceneSettings<2> at_rest() {
+  const Config config = Config::from_text(R"(
+    [box]
+    size = [6.0, 6.0]
+    periodic = [true, true]
+    [fluid]
+    density = 4.0
+    kT = 1.0
+    a = 18.5
+    gamma = 4.5
+    [[body]]
+    name = "disk"
+    shape = "disk"
+    radius = 0.3
+    positions = [{ at = [2.0, 3.0] }]
+  )",
+                                          "at rest");
+  return odpd::read_scene_settings<2>(config);
+}
+
 std::vector<std::string> names(const Results& results) {
   std::vector<std::string> list;
   for (const auto& scalar : results.scalars) list.push_back(scalar.name);
@@ -73,8 +92,8 @@ std::vector<std::string> names(const Results& results) {
 
 /// A run of it.
 struct WholeRun {
-  explicit WholeRun(double mass = 0.0)
-      : scene(everything(mass)),
+  explicit WholeRun(const odpd::SceneSettings<2>& settings = everything())
+      : scene(settings),
         dynamics(scene.box(), scene.particles(), scene.model(), scene,
                  odpd::make_solver({.name = "pcg", .tolerance = 1e-5}), {.seed = 3}),
         integrator(odpd::make_integrator<2>("trapezoidal")) {}
@@ -83,7 +102,8 @@ struct WholeRun {
   std::unique_ptr<Observer<2>> make(const std::string& text,
                                     const std::vector<ObserverKind<2>>& own = {}) const {
     const Config config = Config::from_text("[[observe]]\n" + text, "case.toml");
-    Observers observers = odpd::make_observers<2>(config, scene, clock, true, own);
+    Observers observers =
+        odpd::make_observers<2>(config, scene, clock, odpd::integrator_traits("trapezoidal"), own);
     config.reject_unread();
     return std::move(observers.front());
   }
@@ -102,53 +122,45 @@ struct WholeRun {
   odpd::Clock clock{.dt = 0.04, .total_steps = 200};
 };
 
-class Registry : public ::testing::Test, protected WholeRun {};
-
-// Long enough for all of them: the longest windows are 3 time units. The second set begins in the middle, from the state of the first.
-/// Kinds of `left` that a run of this mass takes; they are no longer in it.
-void expect_named_and_continued(double mass, std::vector<std::string>& left) {
-  WholeRun whole(mass), restarted(mass);
+/// Observers of these keys, each beginning with the line of its kind, in two runs of a scene, the second from the middle of the
+/// first. Long enough for all: the longest windows are 3 time units.
+void expect_named_and_continued(const odpd::SceneSettings<2>& settings,
+                                const std::vector<std::string>& keys) {
+  WholeRun first(settings), restarted(settings);
   Observers through, continued;
   std::vector<std::vector<std::string>> promised;
-  const std::vector<std::string> kinds = std::exchange(left, {});
-  for (const std::string& kind : kinds) {
-    SCOPED_TRACE(kind);
-    try {
-      through.push_back(whole.make("kind = \"" + kind + "\"\n"));
-    } catch (const odpd::ConfigError& e) {
-      EXPECT_NE(std::string(e.what()).find("mass"), std::string::npos) << e.what();
-      left.push_back(kind);
-      continue;
-    }
-    continued.push_back(restarted.make("kind = \"" + kind + "\"\n"));
+  for (const std::string& text : keys) {
+    SCOPED_TRACE(text);
+    through.push_back(first.make(text));
+    continued.push_back(restarted.make(text));
     const Results before = records::results(*through.back());
     promised.push_back(names(before));
-    EXPECT_EQ(through.back()->settings().kind, kind);
+    EXPECT_EQ(text.find("kind = \"" + through.back()->settings().kind + "\"\n"), 0u);
     EXPECT_TRUE(before.tables.empty() && before.charts.empty()) << "nothing was measured yet";
     for (const auto& scalar : before.scalars) EXPECT_TRUE(std::isnan(scalar.mean)) << scalar.name;
-    support::expect_error<odpd::ConfigError>(
-        [&] { whole.make("kind = \"" + kind + "\"\nno_such_key = 1\n"); }, {"no_such_key"});
+    support::expect_error<odpd::ConfigError>([&] { first.make(text + "no_such_key = 1\n"); },
+                                             {"no_such_key"});
   }
   const auto all = [](const Observers& observers) {
     std::vector<Observer<2>*> list;
     for (const auto& observer : observers) list.push_back(observer.get());
     return list;
   };
-  whole.run(51, all(through));
+  first.run(51, all(through));
   support::MemoryArchive particles;
-  whole.scene.particles().save(particles);
+  first.scene.particles().save(particles);
   restarted.scene.particles().load(particles);
   restarted.dynamics.particles_replaced();
-  restarted.clock = whole.clock;
+  restarted.clock = first.clock;
   for (std::size_t k = 0; k < through.size(); ++k) {
     support::MemoryArchive archive;
     through[k]->save(archive);
     continued[k]->load(archive);
   }
-  whole.run(100, all(through));
+  first.run(100, all(through));
   restarted.run(100, all(continued));
   for (std::size_t k = 0; k < through.size(); ++k) {
-    SCOPED_TRACE(through[k]->settings().kind);
+    SCOPED_TRACE(keys[k]);
     const Results one = records::results(*through[k]), other = records::results(*continued[k]);
     EXPECT_EQ(names(one), promised[k]);
     EXPECT_TRUE(std::any_of(one.scalars.begin(), one.scalars.end(),
@@ -169,13 +181,18 @@ void expect_named_and_continued(double mass, std::vector<std::string>& left) {
 }
 
 TEST(EveryKind, NamesWhatItGivesAndContinues) {
-  std::vector<std::string> left;
-  for (const ObserverKind<2>& kind : odpd::observer_kinds<2>()) left.push_back(kind.name);
-  expect_named_and_continued(0.0, left);
-  EXPECT_EQ(left, std::vector<std::string>{"velocities"}) << "those that need a mass";
-  expect_named_and_continued(1.0, left);
-  EXPECT_TRUE(left.empty());
+  std::vector<std::string> keys;
+  for (const ObserverKind<2>& kind : odpd::observer_kinds<2>())
+    if (kind.name != "modes" && kind.name != "velocities")
+      keys.push_back("kind = \"" + kind.name + "\"\n");
+  expect_named_and_continued(everything(), keys);
+  expect_named_and_continued(everything(1.0), {"kind = \"velocities\"\n"});
+  const std::string modes = "kind = \"modes\"\nnumbers = [1, 3]\nwindow = 0.6\n";
+  expect_named_and_continued(at_rest(), {modes, modes + "control = true\n",
+                                         modes + "control = true\ncontrol_every = 3\n"});
 }
+
+class Registry : public ::testing::Test, protected WholeRun {};
 
 /// Mean speed of the free particles times a factor: one constructor, one function.
 class MeanSpeed : public Observer<2> {

@@ -45,6 +45,8 @@ struct ObserverEntry {
   const Clock& clock;
   /// Steps are steps in time; otherwise (Monte Carlo) there are no velocities.
   bool in_time = true;
+  /// As IntegratorTraits::two_stages.
+  bool two_stages = true;
 
   /// Reads the keys of every observer: name, every, series, from, until. Throws ConfigError.
   ObserverSettings settings(std::int64_t default_every = 1) const;

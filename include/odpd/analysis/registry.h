@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "odpd/analysis/observer.h"
+#include "odpd/dynamics/integrator.h"
 
 namespace odpd {
 
@@ -24,12 +25,13 @@ struct ObserverKind {
 template <int D>
 const std::vector<ObserverKind<D>>& observer_kinds();
 
-/// The observers of a case: its [[observe]] entries, of the kinds of the table and of `own`, and those that are always there. Without
-/// `steps_are_time` (Monte Carlo) those of motion are left out. `scene` must outlive them. Throws ConfigError for unknown
+/// The observers of a case: its [[observe]] entries, of the kinds of the table and of `own`, and those that are always there. Under an
+/// `integrator` without time (Monte Carlo) those of motion are left out. `scene` must outlive them. Throws ConfigError for unknown
 /// kinds, bad keys, names given twice.
 template <int D>
 std::vector<std::unique_ptr<Observer<D>>> make_observers(
-    const Config& config, const Scene<D>& scene, const Clock& clock, bool steps_are_time = true,
+    const Config& config, const Scene<D>& scene, const Clock& clock,
+    const IntegratorTraits& integrator = integrator_traits("trapezoidal"),
     const std::vector<ObserverKind<D>>& own = {});
 
 }  // namespace odpd
