@@ -10,7 +10,7 @@ namespace odpd {
 
 namespace {
 
-constexpr std::int64_t most_lags = 100;
+constexpr std::int64_t most_lags = 50;
 
 // A multiple of the steps between controlled ones, for about most_lags of them in a window.
 std::int64_t steps_between_lags(const ModeGrowth::Settings& s) {

@@ -146,9 +146,9 @@ void Modes<D>::measure(const Clock&, const Particles<D>& particles, const StepRe
   add_stage(record.corrector, 1.0 - record.start_weight);
   if (growth_.control_is_due()) solve_modes(particles, record, made, response);
   growth_.add(growth, made, response);
-  // This looks at all edges for each mode, and configurations change little within a window.
+  // Configurations change little within a window.
   if (steps_++ % steps_per_window_ == 0)
-    friction_.add(waves_.friction(particles, record.start.position, record.start.network));
+    friction_.add(waves_.friction(particles, record.start.network));
 }
 
 template <int D>

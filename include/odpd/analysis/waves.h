@@ -37,8 +37,7 @@ class Waves {
   std::vector<double> sums(const Particles<D>& particles, const std::vector<Vec<D>>& position,
                            const std::vector<Vec<D>>& vector) const;
   /// phi R phi of each wave number, the mean over its modes: power per velocity squared of particles that follow the wave.
-  std::vector<double> friction(const Particles<D>& particles, const std::vector<Vec<D>>& position,
-                               const PairNetwork<D>& network) const;
+  std::vector<double> friction(const Particles<D>& particles, const PairNetwork<D>& network) const;
 
  private:
   void add_sums(std::size_t first, std::size_t last, const std::vector<Vec<D>>& position,
