@@ -18,12 +18,14 @@
 //
 // eta_inf(k) = 2 <phi R phi>/(V k^2) is the friction of particles that all follow the wave. Frozen configurations resist less, as
 // particles in them give way.
+#include <complex>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "odpd/analysis/mode_growth.h"
+#include "odpd/analysis/mode_results.h"
 #include "odpd/analysis/observer.h"
 #include "odpd/analysis/waves.h"
 
@@ -60,13 +62,10 @@ class Modes : public Observer<D> {
   double viscosity(std::size_t wave, double chi) const;
   Scalar viscosity(const std::string& what, std::size_t wave,
                    const ModeGrowth::Estimate& chi) const;
-  void add_extrapolation(Results& results) const;
-  Table table(const Results& results) const;
+  ModeResults as_results() const;
+  std::complex<double> jeffreys(std::size_t wave, double omega) const;
   Table lag_table() const;
-  Table modulus_table() const;
-  Chart chart(const Results& results, const Table& by_k) const;
   Chart lag_chart(const Table& by_lag) const;
-  Chart modulus_chart(const Table& by_omega) const;
 
   const Scene<D>& scene_;
   double dt_, window_;
