@@ -6,10 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "odpd/analysis/observer_keys.h"
 #include "odpd/core/index.h"
-#include "odpd/core/parallel.h"
-#include "odpd/geometry/pair_list.h"
 #include "odpd/operator/edge_sums.h"
 
 namespace odpd {
@@ -34,10 +31,19 @@ Vec<3> turn_between(const Rotation<3>& from, const Rotation<3>& to) {
   return (size > 0.0 ? 2.0 * std::atan2(size, re) / size : 2.0) * im;
 }
 
-// Volume between the radii a and b, in D dimensions.
 template <int D>
-double shell(double a, double b) {
-  return unit_ball_volume<D> * (std::pow(b, D) - std::pow(a, D));
+std::vector<std::size_t> kinds_of(const Scene<D>& scene) {
+  std::vector<std::size_t> kinds;
+  for (std::size_t b = 0; b < scene.particles().bodies.size(); ++b)
+    kinds.push_back(scene.body_kind(b));
+  return kinds;
+}
+
+template <int D>
+std::vector<std::string> names_of(const Scene<D>& scene) {
+  std::vector<std::string> names;
+  for (const BodySettings<D>& body : scene.settings().bodies) names.push_back(body.name);
+  return names;
 }
 
 }  // namespace
@@ -49,36 +55,26 @@ Bodies<D>::Bodies(ObserverSettings settings, BodiesSettings bodies, const Scene<
       bodies_(bodies),
       in_time_(in_time),
       scene_(scene),
-      bins_(static_cast<std::size_t>(std::llround(bodies.r_max / bodies.bin))),
-      density_(scene.settings().bodies.size() * bins_),
+      kind_(kinds_of(scene)),
+      names_(names_of(scene)),
+      around_(bodies.around, names_, kind_),
       places_(this->settings().name, bodies.msd.window, bodies.msd.fit_from,
               dt * static_cast<double>(this->settings().every), scene.settings().bodies.size()),
       turns_(this->settings().name, bodies.msd.window, bodies.msd.fit_from,
              dt * static_cast<double>(this->settings().every), scene.settings().bodies.size()) {
   share_.assign(scene.settings().bodies.size(), 0.0);
-  for (std::size_t b = 0; b < scene.particles().bodies.size(); ++b) {
-    kind_.push_back(scene.body_kind(b));
-    share_[kind_.back()] += 1.0;
-  }
+  for (const std::size_t kind : kind_) share_[kind] += 1.0;
   for (double& s : share_) s = 1.0 / s;
-  for (const BodySettings<D>& body : scene.settings().bodies) names_.push_back(body.name);
   angle_.assign(kind_.size() * D, 0.0);
 }
 
 template <int D>
 std::unique_ptr<Observer<D>> Bodies<D>::make(const ObserverEntry<D>& entry) {
   ObserverSettings settings = entry.settings(2);
-  const Config& config = entry.config;
-  if (entry.scene.settings().bodies.empty()) config.fail("kind", "the scene has no [[body]]");
+  if (entry.scene.settings().bodies.empty()) entry.config.fail("kind", "the scene has no [[body]]");
   BodiesSettings b;
   b.msd = read_msd(entry);
-  b.r_max = read_r_max(entry);
-  b.bin = config.positive("bin", b.bin);
-  if (b.bin > b.r_max)
-    config.fail(config.has("bin") ? "bin" : "r_max",
-                fmt::format("bin = {} must be at most r_max = {}", b.bin, b.r_max));
-  b.empty = config.positive("empty", b.empty);
-  if (b.empty >= 1.0) config.fail("empty", "must be below 1, the mean density of the fluid");
+  b.around = read_fluid_around(entry);
   return std::make_unique<Bodies<D>>(std::move(settings), b, entry.scene, entry.clock.dt,
                                      entry.in_time);
 }
@@ -170,55 +166,19 @@ void Bodies<D>::follow(const Particles<D>& particles) {
   turns_.add(angle_, kind, D, rotations);
 }
 
-// Cells as wide as g(q) reaches say which particles may be near a body. Under shear these are cells along the edges of the sheared
-// cell, in which a distance along the flow may be longer.
 template <int D>
 void Bodies<D>::count_fluid(const Particles<D>& particles, const Stage<D>& stage) {
-  const double per_particle = scene_.fluid_volume() / static_cast<double>(particles.free_count());
   const Share own = particles.owned();
-  const double reach = (1.0 + 1e-9) * bodies_.bin * static_cast<double>(bins_);
-  Box<D> straight = stage.box;
-  double tilt = 0.0;
-  if (straight.shear) tilt = std::abs(straight.offset) / straight.size[straight.shear->gradient];
-  straight.shear.reset();
   std::vector<std::int32_t> fluid;
-  std::vector<Vec<D>> places;
-  for (auto i = index(own.first); i < index(own.end(particles.size())); ++i) {
-    if (!particles.is_free(i)) continue;
-    fluid.push_back(static_cast<std::int32_t>(i));
-    places.push_back(stage.box.straightened(stage.position[i]));
+  for (auto i = index(own.first); i < index(own.end(particles.size())); ++i)
+    if (particles.is_free(i)) fluid.push_back(static_cast<std::int32_t>(i));
+  std::vector<Vec<D>> centres;
+  for (std::size_t b = 0; b < kind_.size(); ++b) {
+    const auto first = index(members_[b][0]);
+    centres.push_back(stage.position[first] - stage.arms[first]);
   }
-  const CellList<D> cells(straight, std::hypot(1.0, tilt) * reach, places);
-  const std::size_t pieces = std::min<std::size_t>(kind_.size(), 16);
-  std::vector<double> g(density_.width(), 0.0);
-  std::vector<std::int64_t> counts(pieces * g.size(), 0);
-  parallel_blocks(static_cast<std::int64_t>(pieces), [&](std::int64_t piece) {
-    std::int64_t* const count = &counts[index(piece) * g.size()];
-    std::vector<std::int64_t> near;
-    for (std::size_t b = index(piece); b < kind_.size(); b += pieces) {
-      const auto first = index(members_[b][0]);
-      Vec<D> centre = stage.position[first] - stage.arms[first];
-      stage.box.wrap(centre);
-      cells.neighbourhood(cells.cell_of(stage.box.straightened(centre)), near);
-      for (const std::int64_t cell : near)
-        for (const std::int32_t k : cells.members(cell)) {
-          const Vec<D>& r = stage.position[index(fluid[index(k)])];
-          const double q = norm(stage.box.separation(r, centre));
-          const auto bin = static_cast<std::size_t>(q / bodies_.bin);
-          if (bin < bins_) ++count[kind_[b] * bins_ + bin];
-        }
-    }
-  });
-  for (std::size_t at = 0; at < g.size(); ++at) {
-    const double bin = static_cast<double>(at % bins_);
-    const double each =
-        share_[at / bins_] * per_particle / shell<D>(bodies_.bin * bin, bodies_.bin * (bin + 1.0));
-    // One by one: a sum has the same bits however the particles were found.
-    for (std::size_t piece = 0; piece < pieces; ++piece)
-      for (std::int64_t k = counts[piece * g.size() + at]; k > 0; --k) g[at] += each;
-  }
-  own.ranks->sum(std::span(g));
-  density_.add(g);
+  around_.add(stage, centres, fluid,
+              scene_.fluid_volume() / static_cast<double>(particles.free_count()), *own.ranks);
 }
 
 template <int D>
@@ -256,20 +216,6 @@ std::vector<std::string> Bodies<D>::series_columns() const {
 }
 
 template <int D>
-double Bodies<D>::exclusion_radius(std::size_t kind) const {
-  // What the ball holds beyond its share, at the bins' edges; the crossing farthest out counts.
-  double radius = std::nan(""), beyond = 0.0;
-  for (std::size_t k = 0; k < bins_; ++k) {
-    const double r = bodies_.bin * static_cast<double>(k);
-    const double more =
-        (density_.mean(kind * bins_ + k) - bodies_.empty) * shell<D>(r, r + bodies_.bin);
-    if (beyond <= 0.0 && beyond + more > 0.0) radius = r - bodies_.bin * beyond / more;
-    beyond += more;
-  }
-  return beyond > 0.0 ? radius : std::nan("");  // the largest ball does not end within r_max
-}
-
-template <int D>
 void Bodies<D>::add_diffusion(const std::string& name, std::size_t kind, Results& results) const {
   if (!in_time_ || scene_.settings().bodies[kind].motion != BodyMotion::free) return;
   if (places_.windows() == 0)
@@ -295,14 +241,6 @@ void Bodies<D>::add_results(Results& results) const {
       results.scalars.push_back(
           this->mean_of(column, count == 1 ? what : fmt::format("{}.{}", what, "xyz"[c])));
   };
-  Table table;
-  table.columns = {"q"};
-  Chart chart{.title = "Fluid around the centre of a body",
-              .x_label = "q / r_c",
-              .y_label = "g(q)",
-              .curves = {}};
-  for (std::size_t k = 0; k < bins_; ++k)
-    table.rows.push_back({bodies_.bin * (static_cast<double>(k) + 0.5)});
   for (std::size_t kind = 0; kind < names_.size(); ++kind) {
     const std::string name = observer + "." + names_[kind];
     add(name + ".force", D);
@@ -310,29 +248,17 @@ void Bodies<D>::add_results(Results& results) const {
     add(name + ".velocity", D);
     add(name + ".angular_velocity", turns);
     add_diffusion(name, kind, results);
-    results.scalars.push_back(without_error(name + ".exclusion_radius", exclusion_radius(kind)));
-    table.columns.insert(table.columns.end(),
-                         {"g_" + names_[kind], "g_" + names_[kind] + "_error"});
-    Curve curve{
-        .title = names_[kind], .x = {}, .y = {}, .error = {}, .line = true, .points = false};
-    for (std::size_t k = 0; k < bins_; ++k) {
-      const std::size_t at = kind * bins_ + k;
-      table.rows[k].insert(table.rows[k].end(), {density_.mean(at), density_.standard_error(at)});
-      curve.x.push_back(table.rows[k][0]);
-      curve.y.push_back(density_.mean(at));
-    }
-    chart.curves.push_back(std::move(curve));
+    results.scalars.push_back(
+        without_error(name + ".exclusion_radius", around_.exclusion_radius(kind)));
   }
   add(observer + ".fluid_velocity", D);
-  if (this->average().samples() == 0) return;
-  results.tables.emplace_back(observer, std::move(table));
-  results.charts.emplace_back(observer, std::move(chart));
+  around_.add_table(observer, "Fluid around the centre of a body", results);
 }
 
 template <int D>
 void Bodies<D>::save(StateWriter& out) const {
   Observer<D>::save(out);
-  density_.save(out, "density");
+  around_.save(out);
   places_.save(out, "places_");
   turns_.save(out, "turns_");
   out.write("angle", angle_);
@@ -342,7 +268,7 @@ void Bodies<D>::save(StateWriter& out) const {
 template <int D>
 void Bodies<D>::load(const StateReader& in) {
   Observer<D>::load(in);
-  density_.load(in, "density");
+  around_.load(in);
   places_.load(in, "places_", kind_.size() * D);
   turns_.load(in, "turns_", kind_.size() * D);
   angle_ = in.read_doubles("angle");

@@ -31,21 +31,39 @@ std::vector<std::array<std::size_t, 2>> bond_tree(const MoleculeSettings<D>& m) 
   return tree;
 }
 
+template <int D>
+std::vector<std::string> names_of_molecules(const Scene<D>& scene) {
+  std::vector<std::string> names;
+  for (const auto& m : scene.settings().molecules) names.push_back(m.name);
+  return names;
+}
+
+template <int D>
+std::vector<std::size_t> kinds_of_molecules(const Scene<D>& scene) {
+  std::vector<std::size_t> kinds;
+  for (const Molecule& m : scene.molecules()) kinds.push_back(m.kind);
+  return kinds;
+}
+
 }  // namespace
 
 template <int D>
-MoleculeStatistics<D>::MoleculeStatistics(ObserverSettings settings, MsdSettings msd,
+MoleculeStatistics<D>::MoleculeStatistics(ObserverSettings settings, MoleculesSettings molecules,
                                           const Scene<D>& scene, double dt, bool in_time)
     : Observer<D>(std::move(settings), shape_columns * scene.settings().molecules.size()),
-      msd_(std::move(msd)),
+      msd_(std::move(molecules.msd)),
       scene_(scene),
       in_time_(in_time),
       population_(scene.settings().molecules.size(), 0.0),
+      around_(molecules.around, names_of_molecules(scene), kinds_of_molecules(scene)),
       displacements_(this->settings().name, msd_.window, msd_.fit_from,
                      dt * static_cast<double>(this->settings().every), population_.size()) {
   if (in_time_) scene.particles().carry(column());
   for (const Molecule& m : scene.molecules()) population_[m.kind] += 1.0;
   for (const auto& m : scene.settings().molecules) tree_.push_back(bond_tree(m));
+  const Particles<D>& particles = scene.particles();
+  for (std::size_t i = 0; i < particles.position.size(); ++i)
+    if (is_solvent(particles, i)) ++solvent_;
 }
 
 template <int D>
@@ -53,7 +71,8 @@ std::unique_ptr<Observer<D>> MoleculeStatistics<D>::make(const ObserverEntry<D>&
   ObserverSettings settings = entry.settings(msd_interval(entry.clock));
   if (entry.scene.settings().molecules.empty())
     entry.config.fail("kind", "the scene has no [[molecule]]");
-  return std::make_unique<MoleculeStatistics<D>>(std::move(settings), read_msd(entry), entry.scene,
+  MoleculesSettings m{.msd = read_msd(entry), .around = read_fluid_around(entry)};
+  return std::make_unique<MoleculeStatistics<D>>(std::move(settings), std::move(m), entry.scene,
                                                  entry.clock.dt, entry.in_time);
 }
 
@@ -62,6 +81,42 @@ void MoleculeStatistics<D>::measure(const Clock&, const Particles<D>& particles,
                                     const StepRecord<D>& record) {
   this->add(shapes(particles, record.start));
   if (in_time_) follow(particles);
+  if (solvent_ > 0) count_solvent(particles, record.start);
+}
+
+// Beads have the last identities of all.
+template <int D>
+bool MoleculeStatistics<D>::is_solvent(const Particles<D>& particles, std::size_t i) const {
+  return particles.is_free(i) && particles.id[i] < scene_.molecules()[0].first;
+}
+
+template <int D>
+std::vector<Vec<D>> MoleculeStatistics<D>::beads_of(
+    const Molecule& m, const Stage<D>& stage, const std::vector<std::int32_t>& index_of) const {
+  const auto bead_at = [&](std::size_t bead) {
+    return stage.position[index(index_of[index(m.first) + bead])];
+  };
+  std::vector<Vec<D>> beads(scene_.settings().molecules[m.kind].shape.size());
+  for (const auto& [from, to] : tree_[m.kind])
+    beads[to] = beads[from] + stage.box.separation(bead_at(to), bead_at(from));
+  return beads;
+}
+
+template <int D>
+void MoleculeStatistics<D>::count_solvent(const Particles<D>& particles, const Stage<D>& stage) {
+  const std::vector<std::int32_t> index_of = particles.index_of_id();
+  const Share own = particles.owned();
+  std::vector<std::int32_t> solvent;
+  for (auto i = index(own.first); i < index(own.end(particles.size())); ++i)
+    if (is_solvent(particles, i)) solvent.push_back(static_cast<std::int32_t>(i));
+  std::vector<Vec<D>> centres;
+  for (const Molecule& m : scene_.molecules()) {
+    const std::vector<Vec<D>> beads = beads_of(m, stage, index_of);
+    centres.push_back(stage.position[index(index_of[index(m.first)])]);
+    for (const Vec<D>& r : beads) centres.back() += (1.0 / static_cast<double>(beads.size())) * r;
+  }
+  around_.add(stage, centres, solvent, scene_.fluid_volume() / static_cast<double>(solvent_),
+              *own.ranks);
 }
 
 template <int D>
@@ -70,7 +125,6 @@ std::vector<double> MoleculeStatistics<D>::shapes(const Particles<D>& particles,
   const std::vector<std::int32_t> index_of = particles.index_of_id();
   const Share own = particles.owned();
   std::vector<double> sums(shape_columns * population_.size(), 0.0);
-  std::vector<Vec<D>> beads;
   for (const Molecule& m : scene_.molecules()) {
     const auto& settings = scene_.settings().molecules[m.kind];
     const auto first = index(m.first);
@@ -85,9 +139,7 @@ std::vector<double> MoleculeStatistics<D>::shapes(const Particles<D>& particles,
       sum[0] += share * r;
       sum[1] += share * r * r;
     }
-    beads.assign(settings.shape.size(), Vec<D>{});
-    for (const auto& [from, to] : tree_[m.kind])
-      beads[to] = beads[from] + stage.box.separation(bead_at(to), bead_at(from));
+    const std::vector<Vec<D>> beads = beads_of(m, stage, index_of);
     const double bead = 1.0 / static_cast<double>(beads.size());
     Vec<D> centre{};
     for (const Vec<D>& r : beads) centre += bead * r;
@@ -177,23 +229,30 @@ void MoleculeStatistics<D>::add_results(Results& results) const {
     results.scalars.push_back(this->mean_of(at + 2, prefix + "radius_of_gyration_squared"));
     if (m.site_H > 0.0)
       results.scalars.push_back(this->mean_of(at + 3, prefix + "site_distance_squared"));
+    if (solvent_ > 0)
+      results.scalars.push_back(
+          without_error(prefix + "exclusion_radius", around_.exclusion_radius(kind)));
     if (!in_time_) continue;
     const BlockAverage& diffusion = displacements_.diffusion();
     results.scalars.push_back(
         {prefix + "diffusion", diffusion.mean(kind), diffusion.standard_error(kind)});
   }
+  if (solvent_ > 0)
+    around_.add_table(this->settings().name, "Solvent around the centre of a molecule", results);
 }
 
 template <int D>
 void MoleculeStatistics<D>::save(StateWriter& out) const {
   Observer<D>::save(out);
   displacements_.save(out, "centres_");
+  around_.save(out);
 }
 
 template <int D>
 void MoleculeStatistics<D>::load(const StateReader& in) {
   Observer<D>::load(in);
   displacements_.load(in, "centres_", 0);
+  around_.load(in);
 }
 
 template class MoleculeStatistics<2>;

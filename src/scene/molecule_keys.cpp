@@ -43,6 +43,40 @@ std::vector<Vec<D>> simplex(double edge) {
   return points;
 }
 
+// Six corners (D = 3), each opposite another.
+template <int D>
+std::vector<Vec<D>> octahedron(double edge) {
+  std::vector<Vec<D>> points(2 * D);
+  for (int c = 0; c < D; ++c) {
+    points[index(2 * c)][c] = edge * std::sqrt(0.5);
+    points[index(2 * c + 1)][c] = -edge * std::sqrt(0.5);
+  }
+  return points;
+}
+
+template <int D>
+std::vector<Vec<D>> cube(double edge) {
+  std::vector<Vec<D>> points(std::size_t{1} << D);
+  for (std::size_t k = 0; k < points.size(); ++k)
+    for (int c = 0; c < D; ++c) points[k][c] = edge * (static_cast<double>((k >> c) & 1U) - 0.5);
+  return points;
+}
+
+// Corners, neighbours at `spacing` or all at `radius` from their centre.
+template <int D>
+std::vector<Vec<D>> corners(const Config& entry, const std::string& shape) {
+  const auto of_edge = [&](double edge) {
+    if (shape == "simplex") return simplex<D>(edge);
+    return shape == "cube" ? cube<D>(edge) : octahedron<D>(edge);
+  };
+  if (!entry.has("radius")) return of_edge(entry.positive("spacing"));
+  if (entry.has("spacing")) entry.fail("radius", "give radius or spacing, never both");
+  const std::vector<Vec<D>> unit = of_edge(1.0);
+  Vec<D> centre{};
+  for (const Vec<D>& p : unit) centre += (1.0 / static_cast<double>(unit.size())) * p;
+  return of_edge(entry.positive("radius") / norm(unit[0] - centre));
+}
+
 template <int D>
 void read_beads(const Config& entry, const std::string& shape, MoleculeSettings<D>& m) {
   if (shape == "points") {
@@ -53,8 +87,8 @@ void read_beads(const Config& entry, const std::string& shape, MoleculeSettings<
     m.species_names.erase(m.species_names.begin());
     if (m.shape.empty())
       entry.fail("points", "a shape of points needs some: points = [{ at = [0.0, ...] }, ...]");
-  } else if (shape == "simplex") {
-    m.shape = simplex<D>(entry.positive("spacing"));
+  } else if (shape != "chain" && shape != "walk") {
+    m.shape = corners<D>(entry, shape);
   } else {
     const double spacing = entry.positive("spacing");
     const std::int64_t beads = entry.positive_integer("beads", 2);
@@ -105,9 +139,9 @@ void read_listed_bonds(const Config& entry, MoleculeSettings<D>& m) {
 template <int D>
 void read_sites(const Config& entry, MoleculeSettings<D>& m) {
   if (m.walk > 0.0)
-    entry.fail("bonds",
-               "\"sites\" stand where the shape has its beads, and a walk has no shape: use chain, "
-               "simplex or points");
+    entry.fail(
+        "bonds",
+        "\"sites\" stand where the shape has its beads, and a walk has no shape: use another");
   for (const char* key : {"law", "r_0", "r_max"})
     if (entry.has(key))
       entry.fail(key,
@@ -224,7 +258,9 @@ MoleculeSettings<D> read_molecule(const Config& entry, const Box<D>& box) {
   m.name = entry.text("name", m.name);
   if (!is_plain_name(m.name))
     entry.fail("name", "use letters, digits, _ and -: it goes into file columns");
-  const std::string shape = entry.choice("shape", {"chain", "walk", "simplex", "points"});
+  std::vector<std::string> shapes{"chain", "walk", "simplex", "points"};
+  if (D > 2) shapes.insert(shapes.end(), {"octahedron", "cube"});
+  const std::string shape = entry.choice("shape", shapes);
   m.species_names = {entry.text("species")};
   read_beads(entry, shape, m);
   read_bonds(entry, shape == "chain" || shape == "walk", m);

@@ -33,10 +33,10 @@ TYPED_TEST(BodiesObserverTest, ExclusionDoesNotTellASingleVisit) {
   point.positions = {centre};
   s.bodies = {point};
   const odpd::Scene<D> scene(s);
-  odpd::Bodies<D> bodies({.kind = "bodies", .name = "b"}, {.msd = {}, .r_max = 1.5}, scene, 0.01,
-                         false);
-  odpd::Bodies<D> near({.kind = "bodies", .name = "b"}, {.msd = {}, .r_max = 0.58}, scene, 0.01,
-                       false);
+  odpd::Bodies<D> bodies({.kind = "bodies", .name = "b"}, {.msd = {}, .around = {.r_max = 1.5}},
+                         scene, 0.01, false);
+  odpd::Bodies<D> near({.kind = "bodies", .name = "b"}, {.msd = {}, .around = {.r_max = 0.58}},
+                       scene, 0.01, false);
   odpd::StepRecord<D> record = records::record<D>(scene);
   record.start.arms.resize(record.start.position.size());
   for (std::size_t t = 0; t < samples; ++t) {
@@ -80,8 +80,8 @@ TYPED_TEST(BodiesObserverTest, FluidAroundBodiesIsCountedWithoutMissingAny) {
       box.offset = offset;
       record.start.crossed.resize(record.start.position.size());
     }
-    odpd::Bodies<D> bodies({.kind = "bodies", .name = "q"}, {.msd = {}, .r_max = r_max, .bin = bin},
-                           scene, 0.01, false);
+    odpd::Bodies<D> bodies({.kind = "bodies", .name = "q"},
+                           {.msd = {}, .around = {.r_max = r_max, .bin = bin}}, scene, 0.01, false);
     bodies.measure(odpd::Clock{}, scene.particles(), record);
     std::vector<std::vector<double>> counted(2, std::vector<double>(9, 0.0));
     const auto& particles = scene.particles();
@@ -122,7 +122,8 @@ TEST(BodiesObserver, RotationalDiffusionIsPerAxis) {
     s.bodies.push_back(body);
   }
   odpd::Scene<3> scene(s);
-  odpd::BodiesSettings settings{.msd = {.window = 0.5, .fit_from = 0.1, .directions = {0, 1, 2}}};
+  odpd::BodiesSettings settings{.msd = {.window = 0.5, .fit_from = 0.1, .directions = {0, 1, 2}},
+                                .around = {}};
   odpd::Bodies<3> bodies({.kind = "bodies", .name = "b", .every = 1}, settings, scene, dt);
   auto record = records::record<3>(scene);
   record.start.arms.resize(record.start.position.size());

@@ -308,6 +308,8 @@ CASE
 molecule() { run chain --set "molecule.0.$1" "${@:2}"; }
 expect_exit 0 molecule count=2 --out chained
 expect_error 1 molecule shape=ring -- molecule shape 'chain, walk, simplex, points'
+expect_error 1 molecule shape=octahedron -- molecule shape 'chain, walk, simplex, points'
+expect_error 1 molecule shape=simplex --set molecule.0.radius=0.2 -- molecule radius spacing
 expect_error 1 molecule shape=points -- molecule points
 expect_error 1 molecule species=tail -- species "'tail'"
 expect_error 1 molecule H=0.0 -- molecule H positive
@@ -343,6 +345,8 @@ expect_error 1 molecule bonds=sites --set molecule.0.shape=points --set 'molecul
 expect_error 1 molecule bonds=frame -- bonds 'chain, all, sites'
 expect_error 1 molecule 'positions=[{at=[1.0, 1.0]}]' --set molecule.0.count=2 -- count positions
 expect_error 1 run box --set 'observe=[{kind="molecules"}]' -- kind '[[molecule]]'
+expect_error 1 molecule count=2 --set 'observe=[{kind="molecules", bin=9.0}]' -- bin r_max
+expect_error 1 molecule count=2 --set 'observe=[{kind="molecules", empty=1.0}]' -- empty 'below 1'
 expect_error 1 run box --set bonds.file=bonds.csv -- bonds.file start.from
 cp -r box joined
 sed -i '/^density/d' joined/case.toml

@@ -195,9 +195,8 @@ gamma = 6.97
 s = 0.42
 [[molecule]]
 name = "octahedron"
-shape = "points"
-points = [{ at = [0.2, 0.0, 0.0] }, { at = [-0.2, 0.0, 0.0] }, { at = [0.0, 0.2, 0.0] },
-          { at = [0.0, -0.2, 0.0] }, { at = [0.0, 0.0, 0.2] }, { at = [0.0, 0.0, -0.2] }]
+shape = "octahedron"
+radius = 0.2
 species = "fluid"
 bonds = "sites"
 H = 1000.0
@@ -210,6 +209,41 @@ count = )" + std::to_string(edge * edge * edge));
     EXPECT_NEAR(std::cbrt(3.0 * volume / (4.0 * std::numbers::pi)), row.sphere, 5e-5);
     EXPECT_NEAR(std::cbrt(volume), row.cube, 5e-5);
   }
+}
+
+// Beads at one distance from the centre and, of a shape given by its spacing, each with as many neighbours there as the shape has.
+template <int D>
+void expect_corners(const std::string& shape, std::int64_t beads, std::int64_t neighbours,
+                    double radius_of_edge) {
+  for (const bool by_radius : {true, false}) {
+    const auto s = cases::settings<D>(std::string(D == 2 ? cases::channel : cases::periodic) + R"(
+[[species]]
+name = "fluid"
+[[molecule]]
+species = "fluid"
+H = 100.0
+shape = ")" + shape + (by_radius ? "\"\nradius = 0.2" : "\"\nspacing = 0.2"));
+    const odpd::MoleculeSettings<D>& m = s.molecules.at(0);
+    const double radius = by_radius ? 0.2 : 0.2 * radius_of_edge, edge = radius / radius_of_edge;
+    ASSERT_EQ(m.beads(), beads);
+    EXPECT_EQ(std::ssize(m.bonds), beads * (beads - 1) / 2);
+    for (const Vec<D>& a : m.shape) {
+      EXPECT_NEAR(norm(a), radius, 1e-14) << shape;
+      std::int64_t near = 0;
+      for (const Vec<D>& b : m.shape) {
+        EXPECT_TRUE(&a == &b || norm(a - b) > edge - 1e-14) << shape;
+        if (std::abs(norm(a - b) - edge) < 1e-14) ++near;
+      }
+      EXPECT_EQ(near, neighbours) << shape;
+    }
+  }
+}
+
+TEST(Molecules, HaveCornersBySpacingOrRadius) {
+  expect_corners<2>("simplex", 3, 2, 1.0 / std::sqrt(3.0));
+  expect_corners<3>("simplex", 4, 3, std::sqrt(3.0 / 8.0));
+  expect_corners<3>("octahedron", 6, 4, std::sqrt(0.5));
+  expect_corners<3>("cube", 8, 3, std::sqrt(0.75));
 }
 
 }  // namespace

@@ -7,12 +7,12 @@
 //   diffusion, rotational_diffusion   from mean-square displacements of centre and orientation, the latter about each axis
 //                     that a body turns about: three in 3D, two of a rod (free bodies; not under [shear], where they turn with
 //                     the flow)
-//   g(q)              density of the fluid at distance q from the centre, relative to its mean (Phan-Thien et al. 2016,
-//                     eq. 48), and the exclusion radius: of the largest ball with less than `empty` of the mean density
+//   g(q)              density of the fluid at distance q from the centre, and the exclusion radius (analysis/fluid_around.h)
 //
 // and the mean velocity of the fluid particles, likewise. The orientation is followed by adding up the rotation from sample to sample,
 // so it must turn by less than half a turn between two.
 #include "odpd/analysis/displacements.h"
+#include "odpd/analysis/fluid_around.h"
 #include "odpd/analysis/msd.h"
 #include "odpd/analysis/observer.h"
 #include "odpd/particles/constituents.h"
@@ -20,10 +20,8 @@
 namespace odpd {
 
 struct BodiesSettings {
-  MsdSettings msd;      ///< lags; the directions are those of the centre's displacements
-  double r_max = 2.0;   ///< of g(q) (length)
-  double bin = 0.01;    ///< its bins (length)
-  double empty = 1e-3;  ///< density of a ball without fluid, relative to the mean
+  MsdSettings msd;             ///< lags; the directions are those of the centre's displacements
+  FluidAroundSettings around;  ///< g(q)
 };
 
 template <int D>
@@ -52,7 +50,6 @@ class Bodies : public Observer<D> {
   void follow(const Particles<D>& particles);
   void count_fluid(const Particles<D>& particles, const Stage<D>& stage);
   void add_diffusion(const std::string& name, std::size_t kind, Results& results) const;
-  double exclusion_radius(std::size_t kind) const;
 
   BodiesSettings bodies_;
   bool in_time_;
@@ -61,9 +58,8 @@ class Bodies : public Observer<D> {
   std::vector<std::string> names_;  // of each [[body]]
   std::vector<double> share_;       // 1/bodies of each [[body]]
   Constituents members_;            // in this sample
-  std::size_t bins_;
   // A sample: [[body]] after [[body]], then the fluid's velocity.
-  BlockAverage density_;  // [kind * bins + bin]
+  FluidAround<D> around_;
   Displacements places_, turns_;
   std::vector<double> angle_;        // rotation so far, D numbers per body
   std::vector<double> orientation_;  // at the last sample

@@ -4,20 +4,27 @@
 //   R_g^2 = <1/n sum_b |r_b - R|^2>,   R = 1/n sum_b r_b
 //
 // where they are tied to sites (pairs/site_frame.h) the mean square distance of a bead from its site, and self-diffusion of the
-// centre R from its mean-square displacement, as analysis/displacements.h has it.
+// centre R from its mean-square displacement, as analysis/displacements.h has it. In a solvent, free particles that belong to no
+// molecule, also g(q) of the solvent around the centres and their exclusion radius (analysis/fluid_around.h).
 #include <array>
 
 #include "odpd/analysis/displacements.h"
+#include "odpd/analysis/fluid_around.h"
 #include "odpd/analysis/msd.h"
 
 namespace odpd {
+
+struct MoleculesSettings {
+  MsdSettings msd;             ///< lags and directions of the centre's displacements
+  FluidAroundSettings around;  ///< g(q)
+};
 
 template <int D>
 class MoleculeStatistics : public Observer<D> {
  public:
   /// `in_time`: steps are steps in time; otherwise there is no diffusion.
-  MoleculeStatistics(ObserverSettings settings, MsdSettings msd, const Scene<D>& scene, double dt,
-                     bool in_time);
+  MoleculeStatistics(ObserverSettings settings, MoleculesSettings molecules, const Scene<D>& scene,
+                     double dt, bool in_time);
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
@@ -30,8 +37,13 @@ class MoleculeStatistics : public Observer<D> {
  private:
   /// Where the particles stood when the window began, unwrapped.
   std::string column() const { return "observer_" + this->named("origin"); }
+  /// Where the beads of a molecule are, seen from its first.
+  std::vector<Vec<D>> beads_of(const Molecule& m, const Stage<D>& stage,
+                               const std::vector<std::int32_t>& index_of) const;
   std::vector<double> shapes(const Particles<D>& particles, const Stage<D>& stage) const;
   void follow(const Particles<D>& particles);
+  void count_solvent(const Particles<D>& particles, const Stage<D>& stage);
+  bool is_solvent(const Particles<D>& particles, std::size_t i) const;
 
   MsdSettings msd_;
   const Scene<D>& scene_;
@@ -39,6 +51,8 @@ class MoleculeStatistics : public Observer<D> {
   std::vector<double> population_;  // molecules of each kind
   // Of each kind: bonds that reach all beads from the first on, as (bead reached already, next bead).
   std::vector<std::vector<std::array<std::size_t, 2>>> tree_;
+  std::int64_t solvent_ = 0;  // particles
+  FluidAround<D> around_;
   // A sample, per kind: length, its square, R_g^2, square distance from the sites.
   Displacements displacements_;
 };
