@@ -46,6 +46,7 @@ Modes<D>::Modes(ObserverSettings settings, const ModeSettings& modes, const Scen
       scene_(scene),
       dt_(dt),
       window_(modes.window),
+      control_tolerance_(modes.control_tolerance),
       extrapolate_(std::min(index(modes.extrapolate), modes.numbers.size())),
       waves_(modes.numbers, modes.axes, scene.box().size[modes.axes.front()]),
       growth_(growth_settings(modes, waves_, dt, scene.largest_kT())),
@@ -68,6 +69,10 @@ std::unique_ptr<Observer<D>> Modes<D>::make(const ObserverEntry<D>& entry) {
   modes.extrapolate = config.positive_integer("extrapolate", modes.extrapolate);
   if (config.boolean("control", false))
     modes.control_every = config.positive_integer("control_every", 1);
+  if (modes.control_every > 0) {
+    modes.control_tolerance = config.positive("control_tolerance", modes.control_tolerance);
+    if (modes.control_tolerance >= 1.0) config.fail("control_tolerance", "must be less than 1");
+  }
   if (static_cast<double>(modes.control_every) * entry.clock.dt > 0.25 * modes.window)
     config.fail("control_every", "the window must hold four controlled steps");
   return std::make_unique<Modes<D>>(std::move(settings), modes, entry.scene, entry.clock.dt);
@@ -97,16 +102,21 @@ void Modes<D>::solve_modes(const Particles<D>& particles, const StepRecord<D>& r
   const PairNetwork<D>& network = record.start.network;
   for (const auto& mode : waves_.modes()) {
     const std::vector<Vec<D>> phi = waves_.shape(mode, record.start.position);
-    const std::vector<Vec<D>> w = record.respond(phi);
-    double along_noise = 0.0, along_phi = 0.0;
-    for (std::size_t edge = 0; edge < record.edge_noise.size(); ++edge)
-      if (network.counts(edge))
-        along_noise +=
-            dot(record.edge_noise[edge], w[index(network.i[edge])] - w[index(network.j[edge])]);
+    const std::vector<Vec<D>> w = record.respond(phi, control_tolerance_);
+    double along_noise = 0.0, power = 0.0, along_phi = 0.0;
+    for (std::size_t edge = 0; edge < index(network.size()); ++edge) {
+      if (!network.counts(edge)) continue;
+      const Vec<D> slip = w[index(network.i[edge])] - w[index(network.j[edge])];
+      const double along = dot(slip, network.e[edge]);
+      power += network.zeta_par[edge] * along * along;
+      if (network.transverse) power += network.zeta_perp[edge] * (dot(slip, slip) - along * along);
+      along_noise += dot(record.edge_noise[edge], slip);
+    }
     for (auto i = index(own.first); i < index(own.end(std::ssize(w))); ++i)
       along_phi += dot(phi[i], w[i]);
     made.push_back(dt_ * along_noise);
-    response.push_back(along_phi);
+    response.push_back(2.0 * along_phi -
+                       power);  // of a w that is only nearly right: off by the square of its error
   }
   own.ranks->sum(made);
   own.ranks->sum(response);

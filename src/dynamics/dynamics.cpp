@@ -274,7 +274,7 @@ void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights
 
 template <int D>
 std::vector<Vec<D>> Dynamics<D>::respond(const Stage<D>& stage, const std::vector<Vec<D>>& force,
-                                         bool again) {
+                                         double tolerance, bool again) {
   const Stopwatch watch;
   const Unremembered aside(*solver_);
   const System& system = again ? resistance_.system() : assemble(stage, {});
@@ -286,7 +286,7 @@ std::vector<Vec<D>> Dynamics<D>::respond(const Stage<D>& stage, const std::vecto
     const PhaseTimer timer(phases_, Phase::solve);
     if (!again) solver_->bind(system);
     resistance_.scale_load(load);
-    report = solver_->solve(load, q);
+    report = solver_->solve(load, q, tolerance);
     resistance_.unscale_velocity(q);
   }
   note(report);

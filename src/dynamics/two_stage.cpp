@@ -53,8 +53,9 @@ const StepRecord<D>& TwoStage<D>::step(Dynamics<D>& dynamics, const Clock& clock
     for (std::size_t k = 0; k < q.size(); ++k) p_mid[k] += rest[k];
   }
   this->finish(dynamics, clock, q_mid, p_mid);
-  record.respond = [this, &dynamics, again = false](const std::vector<Vec<D>>& force) mutable {
-    auto velocity = dynamics.respond(this->record_.start, force, again);
+  record.respond = [this, &dynamics, again = false](const std::vector<Vec<D>>& force,
+                                                    double tolerance) mutable {
+    auto velocity = dynamics.respond(this->record_.start, force, tolerance, again);
     again = true;
     return velocity;
   };

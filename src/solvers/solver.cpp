@@ -57,7 +57,8 @@ void Solver::require_bound(std::size_t b_size, std::size_t x_size) const {
   }
 }
 
-SolveReport Solver::solve(std::span<const double> b, std::span<double> x) {
+SolveReport Solver::solve(std::span<const double> b, std::span<double> x, double tolerance) {
+  tolerance_ = tolerance > 0.0 ? tolerance : options_.tolerance;
   require_bound(b.size(), x.size());
   const Stopwatch watch;
   SolveReport report;
@@ -94,12 +95,11 @@ void Solver::iterate(double norm, std::span<double> x, SolveReport& report) {
     std::fill(x.begin(), x.end(), 0.0);  // a guess need not be good
   system_->project(x);
   iterations_left_ = options_.max_iterations;
-  Attempt last = attempt(load_, x, options_.tolerance);
+  Attempt last = attempt(load_, x, tolerance_);
   report.iterations = last.iterations;
   Measured measured = measure(x, norm);
   if (options_.stopping == Stopping::residual) {
-    for (int k = 0; k < most_refinements && last.ok && measured.residual > options_.tolerance;
-         ++k) {
+    for (int k = 0; k < most_refinements && last.ok && measured.residual > tolerance_; ++k) {
       iterations_left_ = options_.max_iterations - report.iterations;
       const double before = measured.residual;
       last = refine(norm, x, measured);
@@ -116,7 +116,7 @@ void Solver::iterate(double norm, std::span<double> x, SolveReport& report) {
 Solver::Attempt Solver::refine(double norm, std::span<double> x, Measured& measured) {
   const std::vector<double> load = residual_;
   correction_.assign(x.size(), 0.0);
-  const double goal = std::clamp(0.5 * options_.tolerance / measured.residual, 1e-15, 0.5);
+  const double goal = std::clamp(0.5 * tolerance_ / measured.residual, 1e-15, 0.5);
   const Attempt result = attempt(load, correction_, goal);
   refined_.resize(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) refined_[i] = x[i] + correction_[i];
@@ -156,14 +156,14 @@ std::string Solver::verdict(const Attempt& last, const Measured& measured,
            drag_cure + ", or mass (fluid.mass)";
   }
   const bool met =
-      options_.stopping == Stopping::increment ? last.ok : measured.residual <= options_.tolerance;
+      options_.stopping == Stopping::increment ? last.ok : measured.residual <= tolerance_;
   if (measured.curvature < 0.0 || (met && measured.curvature == 0.0))
     return name() + ": " + not_definite;
   if (met) return "";
   const std::string reached = fmt::format(
       "{}: after {} iterations the relative residual is {:.3g}, "
       "the tolerance {:.3g}",
-      name(), iterations, measured.residual, options_.tolerance);
+      name(), iterations, measured.residual, tolerance_);
   if (!last.ok)
     return reached +
            ": raise solver.max_iterations, choose another solver.name, or a looser "

@@ -8,7 +8,7 @@
 //
 //   chi_0 = <phi.w>,     D = S - dt w.xi,     chi(t) t = chi_0 t - [<(sum D)^2> - <sum D^2>]/(2 kT)
 //
-// with S what Phi grows by in a step. Time reversal makes Phi uncorrelated with the integral of the drift, which gives the sign;
+// with S what Phi grows by in a step. For a w that is only nearly right chi_0 is 2 phi.w - w.R w, off by the square of its error. Time reversal makes Phi uncorrelated with the integral of the drift, which gives the sign;
 // the noise of D itself, of order dt per step, is no memory, so that the diagonal is left out. Where only every c-th step is
 // controlled, each stands for c of them, and pairs within these c for what <D D_c> and <D D_2c> extrapolate to.
 //

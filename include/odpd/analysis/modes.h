@@ -36,6 +36,7 @@ struct ModeSettings {
   std::vector<int> axes;                ///< directions of k; the box has the same edge along all
   double window = 0.5, fit_from = 0.2;  ///< lags between which chi is fitted (time)
   std::int64_t control_every = 0;       ///< steps between controlled ones; 0: none
+  double control_tolerance = 0.01;      ///< relative, of the solves for the control
   std::int64_t extrapolate = 4;         ///< smallest wave numbers that eta_0 + a k^2 is fitted to
 };
 
@@ -56,7 +57,7 @@ class Modes : public Observer<D> {
   void load(const StateReader& in) override;
 
  private:
-  /// dt w.xi and phi.w of every mode.
+  /// dt w.xi of every mode, and phi.w to second order in the error of w.
   void solve_modes(const Particles<D>& particles, const StepRecord<D>& record,
                    std::vector<double>& made, std::vector<double>& response) const;
   double viscosity(std::size_t wave, double chi) const;
@@ -68,7 +69,7 @@ class Modes : public Observer<D> {
   Chart lag_chart(const Table& by_lag) const;
 
   const Scene<D>& scene_;
-  double dt_, window_;
+  double dt_, window_, control_tolerance_;
   std::size_t extrapolate_;
   Waves<D> waves_;
   ModeGrowth growth_;

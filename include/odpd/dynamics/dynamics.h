@@ -108,7 +108,8 @@ class Dynamics {
   /// P (P^T R P)^+ P^T f at a stage that was evaluated: velocities from one force per particle, with the drag in R but no
   /// mass and no stiffness. Sets the solver up first unless the last solve was one of these for the same stage (`again`).
   /// Throws SolverError when the solver did not converge.
-  std::vector<Vec<D>> respond(const Stage<D>& stage, const std::vector<Vec<D>>& force, bool again);
+  std::vector<Vec<D>> respond(const Stage<D>& stage, const std::vector<Vec<D>>& force,
+                              double tolerance, bool again);
 
   /// M = 2 m/dt.
   double inertia(double dt) const { return 2.0 * constants_.mass / dt; }

@@ -60,8 +60,8 @@ class Solver {
   void bind(const System& system);
   /// Solves from the initial guess in x (size system.size()). Never throws for lack of convergence:
   /// the report says so and the caller must act on it. x has zero mean where the problem is
-  /// projected.
-  SolveReport solve(std::span<const double> b, std::span<double> x);
+  /// projected. tolerance: of this solve alone; 0: that of the options.
+  SolveReport solve(std::span<const double> b, std::span<double> x, double tolerance = 0.0);
 
   /// What a solver remembers from one solve to the next; a restarted run continues with it.
   virtual void save(StateWriter&) const {}
@@ -113,6 +113,7 @@ class Solver {
   std::string verdict(const Attempt& last, const Measured& measured, std::int64_t iterations) const;
 
   std::uint64_t generation_ = 0;
+  double tolerance_ = 0.0;
   std::vector<double> load_;        // Pi b
   std::vector<double> residual_;    // Pi (b - A x)
   std::vector<double> correction_;  // of refinement
