@@ -55,7 +55,7 @@ class Integrator {
   /// What every step begins with: memory in order, edges and forces at r, the velocity there.
   void begin(Dynamics<D>& dynamics, const Clock& clock);
   /// What steps with implicit friction end with: r' = r + dt P q_mid, and with mass p' = 2 p_mid - p, p = P^T P q the
-  /// momentum per mass, p_mid the mean over the stages.
+  /// momentum per mass, p_mid that halfway.
   void finish(Dynamics<D>& dynamics, const Clock& clock, const Unknowns& q_mid,
               const Unknowns& p_mid);
 
