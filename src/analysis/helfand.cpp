@@ -1,103 +1,82 @@
 #include "odpd/analysis/helfand.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "odpd/analysis/least_squares.h"
-#include "odpd/core/error.h"
+#include "odpd/analysis/force_points.h"
+#include "odpd/analysis/stress.h"
+#include "odpd/core/index.h"
+#include "odpd/operator/edge_sums.h"
 
 namespace odpd {
 
-Helfand::Helfand(const Settings& settings, std::size_t components)
-    : settings_(settings),
-      lags_(static_cast<std::size_t>(std::max<std::int64_t>(
-          2, std::llround(settings.window /
-                          (settings.dt * static_cast<double>(settings.steps_per_lag)))))),
-      integral_(components, 0.0),
-      history_(components, 0.0),
-      weight_(lags_, 0.0),
-      average_(lags_ + 1) {
-  std::vector<double> t;
-  for (std::size_t lag = 1; lag <= lags_; ++lag)
-    if (lag_time(lag) >= settings_.fit_from || lag + 1 >= lags_) t.push_back(lag_time(lag));
-  const std::vector<double> even(t.size(), 1.0);
-  const std::vector<double> weight = fit_polynomial(1, t, even, even).weight[1];
-  std::copy(weight.begin(), weight.end(),
-            weight_.end() - static_cast<std::ptrdiff_t>(weight.size()));
+namespace {
+
+// E r of the component a, b: shear, or stretching along a and compression along b.
+template <int D>
+Vec<D> strained(int a, int b, bool stretch, const Vec<D>& r) {
+  Vec<D> slip{};
+  slip[a] = 0.5 * r[stretch ? a : b];
+  slip[b] = stretch ? -0.5 * r[b] : 0.5 * r[a];
+  return slip;
 }
 
-double Helfand::lag_time(std::size_t lag) const {
-  return settings_.dt * static_cast<double>(settings_.steps_per_lag) * static_cast<double>(lag);
-}
+}  // namespace
 
-void Helfand::add(std::span<const double> stress) {
-  const std::size_t n = integral_.size();
-  for (std::size_t c = 0; c < n; ++c) integral_[c] += settings_.volume * settings_.dt * stress[c];
-  if (++steps_ < settings_.steps_per_lag) return;
-  steps_ = 0;
-  history_.insert(history_.end(), integral_.begin(), integral_.end());
-  if (history_.size() < (lags_ + 1) * n) return;
-  std::vector<double> sample(lags_ + 1, 0.0);
-  const double scale = 1.0 / (2.0 * settings_.volume * settings_.kT * static_cast<double>(n));
-  for (std::size_t lag = 1; lag <= lags_; ++lag) {
-    for (std::size_t c = 0; c < n; ++c) {
-      const double growth = integral_[c] - history_[(lags_ - lag) * n + c];
-      sample[lag - 1] += scale * growth * growth;
+template <int D>
+std::vector<double> helfand_growth(const Scene<D>& scene, const Particles<D>& particles,
+                                   const StepRecord<D>& record) {
+  const std::vector<double> stress = stress_of(scene, particles, record, StressBins{});
+  const auto total = [&](std::size_t a, std::size_t b) {
+    double sum = 0.0;
+    for (std::size_t part = 0; part < stress_parts; ++part) sum += stress[(part * D + a) * D + b];
+    return scene.fluid_volume() * record.dt * sum;
+  };
+  std::vector<double> growth;
+  for (std::size_t a = 0; a < D; ++a)
+    for (std::size_t b = a + 1; b < D; ++b) {
+      growth.push_back(0.5 * (total(a, b) + total(b, a)));
+      growth.push_back(0.5 * (total(a, a) - total(b, b)));
     }
-    sample[lags_] += weight_[lag - 1] * sample[lag - 1];
-  }
-  average_.add(sample);
-  history_.erase(history_.begin(), history_.begin() + static_cast<std::ptrdiff_t>(n));
+  return growth;
 }
 
-Scalar Helfand::viscosity(std::string name) const {
-  if (samples() == 0) return {std::move(name), std::nan(""), std::nan("")};
-  return {std::move(name), average_.mean(lags_), average_.standard_error(lags_)};
+template <int D>
+HelfandControl helfand_control(const Particles<D>& particles, const StepRecord<D>& record,
+                               double tolerance) {
+  const PairNetwork<D>& network = record.start.network;
+  const ForcePoints<D> points(particles, record.start);
+  const std::size_t edges = index(network.size());
+  HelfandControl control;
+  for (int a = 0; a < D; ++a)
+    for (int b = a + 1; b < D; ++b)
+      for (const bool stretch : {false, true}) {
+        const auto affine = [&](std::size_t k) {
+          return strained(a, b, stretch, points.between(network, k));
+        };
+        std::vector<Vec<D>> friction(edges), load(record.start.position.size());
+        for (std::size_t k = 0; k < edges; ++k)
+          friction[k] = -1.0 * friction_of<D>(network, k, affine(k));
+        add_edge_forces<D>(network, friction, load);
+        const std::vector<Vec<D>> w = record.respond(load, tolerance);
+        double along_noise = 0.0, power = 0.0;
+        for (std::size_t k = 0; k < edges; ++k) {
+          if (!network.counts(k)) continue;
+          const Vec<D> slip = affine(k) - w[index(network.i[k])] + w[index(network.j[k])];
+          power -= dot(slip, friction_of<D>(network, k, slip));
+          along_noise += dot(record.edge_noise[k], slip);
+        }
+        control.made.push_back(-record.dt * along_noise);
+        control.response.push_back(power);
+      }
+  particles.ranks().sum(control.made);
+  particles.ranks().sum(control.response);
+  return control;
 }
 
-Table Helfand::table() const {
-  Table table;
-  table.comment = {
-      "growth of the integrated stress, <(dG)^2>/(2 V kT); its slope is the viscosity"};
-  table.columns = {"lag", "growth", "growth_error"};
-  for (std::size_t lag = 1; lag <= lags_; ++lag)
-    table.rows.push_back({lag_time(lag), average_.mean(lag - 1), average_.standard_error(lag - 1)});
-  return table;
-}
-
-Chart Helfand::chart() const {
-  Chart chart{.title = "Growth of the integrated stress",
-              .x_label = "lag",
-              .y_label = "<dG^2> / (2 V kT)",
-              .curves = {}};
-  Curve curve{.title = "measured", .x = {}, .y = {}, .error = {}};
-  for (const auto& row : table().rows) {
-    curve.x.push_back(row[0]);
-    curve.y.push_back(row[1]);
-  }
-  chart.curves.push_back(std::move(curve));
-  return chart;
-}
-
-void Helfand::save(StateWriter& out) const {
-  out.write("integral", integral_);
-  out.write("history", history_);
-  out.write("steps", std::vector<std::int64_t>{steps_});
-  average_.save(out, "growth");
-}
-
-void Helfand::load(const StateReader& in) {
-  const std::size_t n = integral_.size();
-  integral_ = in.read_doubles("integral");
-  history_ = in.read_doubles("history");
-  const std::vector<std::int64_t> steps = in.read_integers("steps");
-  if (integral_.size() != n || history_.size() % n != 0 || history_.size() > (lags_ + 1) * n ||
-      history_.empty() || steps.size() != 1)
-    throw IoError(
-        "the checkpoint's integrated stress does not fit the case's window: it is damaged or of "
-        "another case");
-  steps_ = steps[0];
-  average_.load(in, "growth");
-}
+#define ODPD_INSTANTIATE(D)                                                            \
+  template std::vector<double> helfand_growth<D>(const Scene<D>&, const Particles<D>&, \
+                                                 const StepRecord<D>&);                \
+  template HelfandControl helfand_control<D>(const Particles<D>&, const StepRecord<D>&, double);
+ODPD_INSTANTIATE(2)
+ODPD_INSTANTIATE(3)
+#undef ODPD_INSTANTIATE
 
 }  // namespace odpd

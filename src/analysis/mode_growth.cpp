@@ -92,6 +92,7 @@ void ModeGrowth::add_sample() {
   std::vector<double> sample(average_.width(), 0.0);
   const double scale = 1.0 / (2.0 * settings_.kT * static_cast<double>(settings_.modes_per_wave));
   const auto every = static_cast<double>(settings_.control_every);
+  const double sign = settings_.drift_adds ? 1.0 : -1.0;
   for (std::size_t m = 0; m < n; ++m) {
     double* const of_wave = sample.data() + m / settings_.modes_per_wave * width();
     for (std::size_t lag = 1; lag <= lags_; ++lag) {
@@ -101,7 +102,7 @@ void ModeGrowth::add_sample() {
       if (!controlled()) continue;
       const double drift = drift_[m] - drift_history_[then];
       const double square = square_[m] - square_history_[then];
-      of_wave[lags_ + lag] -= scale * every * every * (drift * drift - square);
+      of_wave[lags_ + lag] += sign * scale * every * every * (drift * drift - square);
     }
   }
   for (std::size_t wave = 0; wave < settings_.waves; ++wave) {
@@ -122,10 +123,11 @@ void ModeGrowth::finish_control(std::span<double> of_wave, double response, doub
   const double steps = static_cast<double>(steps_per_lag_) / every;
   const double chi_0 = response / steps;
   // Each of c steps has c - 1 others that no pair of controlled ones stands for.
-  const double nearer = (every - 1.0) * near / steps / (2.0 * settings_.kT * settings_.dt);
+  const double nearer = (settings_.drift_adds ? 1.0 : -1.0) * (every - 1.0) * near / steps /
+                        (2.0 * settings_.kT * settings_.dt);
   for (std::size_t lag = 1; lag <= lags_; ++lag) {
     double& chi = of_wave[lags_ + lag];
-    chi = chi_0 - nearer + chi / lag_time(lag);
+    chi = chi_0 + nearer + chi / lag_time(lag);
     of_wave[2 * lags_ + 1] += weight_[lag - 1] * lag_time(lag) * chi;
     of_wave[2 * lags_ + 3] += offset_weight_[lag - 1] * lag_time(lag) * chi;
   }
@@ -200,8 +202,8 @@ void ModeGrowth::load(const StateReader& in) {
   }
   if (!fits)
     throw IoError(
-        "the checkpoint's modes do not fit the case's wave numbers and window: it is damaged or of "
-        "another case");
+        "what the checkpoint has of growing integrals does not fit the case's observers and their "
+        "window: it is damaged or of another case");
   steps_ = steps[0];
   average_.load(in, "growth");
 }

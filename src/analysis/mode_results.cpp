@@ -34,9 +34,10 @@ void ModeResults::add_extrapolation(Results& results, std::size_t waves,
         return sum;
       });
     }
-    results.notes.push_back(
-        fmt::format("{}: eta_0 + {} k^2 fitted up to k = {:.4g}, reduced chi^2 {:.2g}", zero.name,
-                    curvature.name, k[waves - 1], fit.reduced_chi_square));
+    std::string note = fmt::format("{}: eta_0 + {} k^2 fitted up to k = {:.4g}", zero.name,
+                                   curvature.name, k[waves - 1]);
+    if (waves > 2) note += fmt::format(", reduced chi^2 {:.2g}", fit.reduced_chi_square);
+    results.notes.push_back(std::move(note));
   }
   results.scalars.push_back(std::move(zero));
   results.scalars.push_back(std::move(curvature));

@@ -7,6 +7,7 @@
 
 #include "odpd/analysis/mode_keys.h"
 #include "odpd/core/index.h"
+#include "odpd/operator/edge_sums.h"
 
 namespace odpd {
 
@@ -21,7 +22,7 @@ ModeGrowth::Settings growth_settings(const ModeSettings& modes, const Waves<D>& 
           .kT = kT,
           .waves = waves.count(),
           .modes_per_wave = waves.modes_per_wave(),
-          .control_every = modes.control_every};
+          .control_every = modes.control.every};
 }
 
 // What keeps a run from showing eta(k) by the spread along waves.
@@ -46,7 +47,7 @@ Modes<D>::Modes(ObserverSettings settings, const ModeSettings& modes, const Scen
       scene_(scene),
       dt_(dt),
       window_(modes.window),
-      control_tolerance_(modes.control_tolerance),
+      control_tolerance_(modes.control.tolerance),
       extrapolate_(std::min(index(modes.extrapolate), modes.numbers.size())),
       waves_(modes.numbers, modes.axes, scene.box().size[modes.axes.front()]),
       growth_(growth_settings(modes, waves_, dt, scene.largest_kT())),
@@ -67,14 +68,7 @@ std::unique_ptr<Observer<D>> Modes<D>::make(const ObserverEntry<D>& entry) {
   modes.fit_from = config.non_negative("fit_from", 0.4 * modes.window);
   if (modes.fit_from >= modes.window) config.fail("fit_from", "must be less than window");
   modes.extrapolate = config.positive_integer("extrapolate", modes.extrapolate);
-  if (config.boolean("control", false))
-    modes.control_every = config.positive_integer("control_every", 1);
-  if (modes.control_every > 0) {
-    modes.control_tolerance = config.positive("control_tolerance", modes.control_tolerance);
-    if (modes.control_tolerance >= 1.0) config.fail("control_tolerance", "must be less than 1");
-  }
-  if (static_cast<double>(modes.control_every) * entry.clock.dt > 0.25 * modes.window)
-    config.fail("control_every", "the window must hold four controlled steps");
+  modes.control = read_control(config, modes.window, entry.clock.dt);
   return std::make_unique<Modes<D>>(std::move(settings), modes, entry.scene, entry.clock.dt);
 }
 
@@ -107,16 +101,13 @@ void Modes<D>::solve_modes(const Particles<D>& particles, const StepRecord<D>& r
     for (std::size_t edge = 0; edge < index(network.size()); ++edge) {
       if (!network.counts(edge)) continue;
       const Vec<D> slip = w[index(network.i[edge])] - w[index(network.j[edge])];
-      const double along = dot(slip, network.e[edge]);
-      power += network.zeta_par[edge] * along * along;
-      if (network.transverse) power += network.zeta_perp[edge] * (dot(slip, slip) - along * along);
+      power -= dot(slip, friction_of<D>(network, edge, slip));
       along_noise += dot(record.edge_noise[edge], slip);
     }
     for (auto i = index(own.first); i < index(own.end(std::ssize(w))); ++i)
       along_phi += dot(phi[i], w[i]);
     made.push_back(dt_ * along_noise);
-    response.push_back(2.0 * along_phi -
-                       power);  // of a w that is only nearly right: off by the square of its error
+    response.push_back(2.0 * along_phi - power);
   }
   own.ranks->sum(made);
   own.ranks->sum(response);

@@ -95,6 +95,17 @@ double read_r_max(const ObserverEntry<D>& entry) {
   return r_max;
 }
 
+ControlKeys read_control(const Config& config, double window, double dt) {
+  ControlKeys control;
+  if (!config.boolean("control", false)) return control;
+  control.every = config.positive_integer("control_every", 1);
+  control.tolerance = config.positive("control_tolerance", control.tolerance);
+  if (control.tolerance >= 1.0) config.fail("control_tolerance", "must be less than 1");
+  if (static_cast<double>(control.every) * dt > 0.25 * window)
+    config.fail("control_every", "the window must hold four controlled steps");
+  return control;
+}
+
 #define ODPD_INSTANTIATE(D)                                                             \
   template int read_direction<D>(const Config&, const std::string&, int);               \
   template int read_axis<D>(const ObserverEntry<D>&);                                   \

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/analysis/helfand.h"
 #include "odpd/core/index.h"
 
 namespace odpd {
@@ -146,7 +147,10 @@ ViscosityScene viscosity_scene(const Scene<D>& scene) {
 template <int D>
 Viscosity<D>::Viscosity(ObserverSettings settings, const ViscositySettings& viscosity,
                         const Scene<D>& scene, double dt)
-    : Observer<D>(std::move(settings)), kind_(viscosity_scene(scene)), scene_(scene) {
+    : Observer<D>(std::move(settings)),
+      kind_(viscosity_scene(scene)),
+      scene_(scene),
+      control_tolerance_(viscosity.control.tolerance) {
   using Kind = ViscosityScene::Kind;
   const std::int64_t every = this->settings().every;
   if (kind_.has_profile()) {
@@ -166,14 +170,14 @@ Viscosity<D>::Viscosity(ObserverSettings settings, const ViscositySettings& visc
     parts_.push_back(std::make_unique<Stress<D>>(
         ObserverSettings{.kind = "stress", .name = "stress", .every = every}, StressBins{}, scene));
   if (kind_.kind == Kind::at_rest)
-    helfand_.emplace(Helfand::Settings{.window = viscosity.window,
-                                       .fit_from = viscosity.fit_from,
-                                       .dt = dt,
-                                       .steps_per_lag = std::max<std::int64_t>(
-                                           1, std::llround(viscosity.window / (50 * dt))),
-                                       .volume = scene.fluid_volume(),
-                                       .kT = scene.largest_kT()},
-                     index(D * (D - 1)));
+    growth_.emplace(ModeGrowth::Settings{.window = viscosity.window,
+                                         .fit_from = viscosity.fit_from,
+                                         .dt = dt,
+                                         .kT = scene.largest_kT(),
+                                         .waves = 1,
+                                         .modes_per_wave = index(D * (D - 1)),
+                                         .control_every = viscosity.control.every,
+                                         .drift_adds = true});
 }
 
 template <int D>
@@ -206,6 +210,12 @@ std::unique_ptr<Observer<D>> Viscosity<D>::make(const ObserverEntry<D>& entry) {
     if (v.fit_from >= v.window) config.fail("fit_from", "must be less than window");
     if (settings.every != 1)
       config.fail("every", "must be 1: the stress is integrated over every step");
+    v.control = read_control(config, v.window, entry.clock.dt);
+    if (v.control.every > 0 && (entry.scene.settings().mass > 0.0 || !entry.two_stages))
+      config.fail("control",
+                  "knows what the noise does to particles without mass, in schemes of two stages: "
+                  "set fluid.mass = 0 and the "
+                  "integrator 'trapezoidal' or 'midpoint', or leave control out");
   }
   return std::make_unique<Viscosity<D>>(std::move(settings), v, entry.scene, entry.clock.dt);
 }
@@ -214,31 +224,54 @@ template <int D>
 void Viscosity<D>::measure(const Clock& clock, const Particles<D>& particles,
                            const StepRecord<D>& record) {
   for (auto& part : parts_) part->measure(clock, particles, record);
-  if (!helfand_) return;
-  const std::vector<double> stress = stress_of(scene_, particles, record, StressBins{});
-  const auto total = [&](std::size_t a, std::size_t b) {
-    double sum = 0.0;
-    for (std::size_t part = 0; part < stress_parts; ++part) sum += stress[(part * D + a) * D + b];
-    return sum;
-  };
-  std::vector<double> shear;
-  for (std::size_t a = 0; a < D; ++a)
-    for (std::size_t b = a + 1; b < D; ++b) {
-      shear.push_back(0.5 * (total(a, b) + total(b, a)));
-      shear.push_back(0.5 * (total(a, a) - total(b, b)));
-    }
-  helfand_->add(shear);
+  if (!growth_) return;
+  HelfandControl control;
+  if (growth_->control_is_due()) control = helfand_control(particles, record, control_tolerance_);
+  growth_->add(helfand_growth(scene_, particles, record), control.made, control.response);
+}
+
+template <int D>
+Scalar Viscosity<D>::helfand(const std::string& what, const ModeGrowth::Estimate& growth) const {
+  const double volume = scene_.fluid_volume();
+  return {this->named(what), growth.mean / volume, growth.error / volume};
+}
+
+template <int D>
+Table Viscosity<D>::growth_table() const {
+  Table table;
+  table.comment = {
+      "growth of the integrated stress, <(dG)^2>/(2 V kT); its slope is the viscosity"};
+  table.columns = {"lag", "growth", "growth_error"};
+  for (std::size_t lag = 1; lag <= growth_->lags(); ++lag) {
+    const double t = growth_->lag_time(lag);
+    const Scalar eta = helfand("at_lag", growth_->at_lag(0, lag));
+    table.rows.push_back({t, t * eta.mean, t * eta.standard_error});
+  }
+  return table;
 }
 
 template <int D>
 std::vector<Scalar> Viscosity<D>::routes(Results& results) const {
   const std::string& name = this->settings().name;
-  if (helfand_) {
-    if (helfand_->samples() > 0) {
-      results.tables.emplace_back(name, helfand_->table());
-      results.charts.emplace_back(name, helfand_->chart());
+  if (growth_) {
+    if (growth_->samples() > 0) {
+      Curve curve{.title = "measured", .x = {}, .y = {}, .error = {}};
+      const Table table = growth_table();
+      for (const auto& row : table.rows) {
+        curve.x.push_back(row[0]);
+        curve.y.push_back(row[1]);
+      }
+      results.tables.emplace_back(name, table);
+      results.charts.emplace_back(name, Chart{.title = "Growth of the integrated stress",
+                                              .x_label = "lag",
+                                              .y_label = "<dG^2> / (2 V kT)",
+                                              .curves = {std::move(curve)}});
     }
-    return {helfand_->viscosity(name + ".helfand")};
+    if (growth_->controlled()) {
+      results.scalars.push_back(helfand("plain", growth_->plain(0)));
+      results.scalars.push_back(helfand("frozen", growth_->frozen(0)));
+    }
+    return {helfand("helfand", growth_->chi(0))};
   }
   Results parts;
   for (const auto& part : parts_) part->add_results(parts);
@@ -290,15 +323,15 @@ std::vector<std::string> Viscosity<D>::series_columns() const {
   for (const auto& part : parts_)
     for (const std::string& column : part->series_columns())
       columns.push_back(part->settings().name + "_" + column);
-  if (helfand_)
-    for (std::size_t k = 0; k < helfand_->integral().size(); ++k)
+  if (growth_)
+    for (std::size_t k = 0; k < growth_->integral().size(); ++k)
       columns.push_back(fmt::format("integral_{}", k));
   return columns;
 }
 
 template <int D>
 std::vector<double> Viscosity<D>::series_row() const {
-  if (helfand_) return helfand_->integral();
+  if (growth_) return growth_->integral();
   std::vector<double> row;
   for (const auto& part : parts_) {
     const std::vector<double> values = part->series_row();
@@ -313,13 +346,13 @@ void Viscosity<D>::save(StateWriter& out) const {
     PrefixedWriter prefixed(out, part->settings().name + "/");
     part->save(prefixed);
   }
-  if (helfand_) helfand_->save(out);
+  if (growth_) growth_->save(out);
 }
 
 template <int D>
 void Viscosity<D>::load(const StateReader& in) {
   for (auto& part : parts_) part->load(PrefixedReader(in, part->settings().name + "/"));
-  if (helfand_) helfand_->load(in);
+  if (growth_) growth_->load(in);
 }
 
 template ViscosityScene viscosity_scene<2>(const Scene<2>&);

@@ -54,16 +54,29 @@ TEST(ModeGrowth, IndependentStepsGiveTheirVariance) {
   EXPECT_DOUBLE_EQ(growth.lag_time(growth.lags()), 0.08);
 }
 
+// What comes back later is subtracted: an impulse w and -w/2 one step on have a quarter of the growth.
+TEST(ModeGrowth, CorrelationsCount) {
+  ModeGrowth growth({.window = 0.4, .fit_from = 0.2, .dt = 0.01, .kT = 0.5});
+  const auto w = support::random_numbers(40001, 8);
+  for (std::size_t n = 1; n < w.size(); ++n) {
+    const double step = 0.01 * (w[n] - 0.5 * w[n - 1]);
+    growth.add({&step, 1});
+  }
+  EXPECT_NEAR(growth.chi(0).mean, 0.25 * 0.01, 4.0 * growth.chi(0).error);
+  EXPECT_LT(growth.chi(0).error, 0.1 * growth.chi(0).mean);
+}
+
 /// Steps whose noise is known but for D, of which `drift` gives the next from a random number.
 template <class Drift>
-ModeGrowth controlled(std::int64_t every, const Drift& drift) {
+ModeGrowth controlled(std::int64_t every, const Drift& drift, bool adds = false) {
   ModeGrowth growth({.window = 0.4,
                      .fit_from = 0.2,
                      .dt = 0.01,
                      .kT = 0.5,
                      .waves = 1,
                      .modes_per_wave = 1,
-                     .control_every = every});
+                     .control_every = every,
+                     .drift_adds = adds});
   const auto w = support::random_numbers(2 * 40000, 9);
   for (std::size_t n = 0; n < 40000; ++n) {
     const double made = 10.0 * w[2 * n], response = 100.0 + w[2 * n], d = drift(w[2 * n + 1]);
@@ -89,8 +102,8 @@ TEST(ModeGrowth, NoiseOfTheDriftCountsForNothing) {
   }
 }
 
-// <D_0 D_m> = c^m: it takes sum over pairs from chi_0 t, so that the slope is that of -[2 sum (l - m) c^m]/(2 kT).
-TEST(ModeGrowth, MemoryOfTheDriftIsTakenOff) {
+// <D_0 D_m> = c^m: it takes sum over pairs from chi_0 t, or adds it, so that the slope is that of -+[2 sum (l - m) c^m]/(2 kT).
+TEST(ModeGrowth, MemoryOfTheDriftIsTakenOffOrAdds) {
   constexpr double c = 0.9;
   std::vector<double> t, taken;
   for (int l = 20; l <= 40; ++l) {
@@ -110,6 +123,16 @@ TEST(ModeGrowth, MemoryOfTheDriftIsTakenOff) {
     });
     EXPECT_NEAR(growth.chi(0).mean, exact, 4.0 * growth.chi(0).error) << every;
     EXPECT_LT(growth.chi(0).error, 0.15 * std::abs(exact)) << every;
+    d = 0.0;
+    const auto adds = controlled(
+        every,
+        [&](double w) {
+          d = c * d + std::sqrt(1.0 - c * c) * w;
+          return d;
+        },
+        true);
+    EXPECT_NEAR(adds.chi(0).mean, 100.0 + line[1], 4.0 * adds.chi(0).error) << every;
+    EXPECT_LT(adds.chi(0).error, 0.15 * line[1]) << every;
     EXPECT_NEAR(growth.memory_time(0).mean, tau, 4.0 * growth.memory_time(0).error) << every;
     EXPECT_LT(growth.memory_time(0).error, 0.4 * tau) << every;
   }
@@ -234,8 +257,7 @@ TYPED_TEST(ModesTest, ControlTakesOutWhatTheNoiseMakes) {
                                       .axes = {0},
                                       .window = 0.24,
                                       .fit_from = 0.06,
-                                      .control_every = every,
-                                      .control_tolerance = tolerance});
+                                      .control = {.every = every, .tolerance = tolerance}});
       for (std::uint64_t n = 0; n < 200; ++n) {
         step.record.edge_noise = support::random_vectors<D>(step.record.edge_noise.size(), 30 + n);
         std::vector<Vec<D>> xi(6);
@@ -296,7 +318,7 @@ TEST(Modes, MasslessFluidHasItsViscosities) {
                              odpd::make_solver({.name = "pcg", .tolerance = 1e-4}), {.seed = 5});
   const auto integrator = odpd::make_integrator<2>("trapezoidal");
   const ModeSettings settings{
-      .numbers = {1, 4}, .axes = {0, 1}, .window = 0.3, .fit_from = 0.1, .control_every = 2};
+      .numbers = {1, 4}, .axes = {0, 1}, .window = 0.3, .fit_from = 0.1, .control = {.every = 2}};
   odpd::Clock clock{.dt = 0.01, .equilibration_steps = 60, .total_steps = 460};
   Modes<2> modes({.kind = "modes", .name = "modes"}, settings, scene, clock.dt);
   while (!clock.finished()) {

@@ -12,54 +12,10 @@
 namespace {
 
 using odpd::Clock;
-using odpd::Helfand;
 using odpd::Scene;
 using odpd::Vec;
 using odpd::Viscosity;
 using odpd::ViscosityScene;
-
-// Independent stresses of variance s^2 per step: <dG^2> = V^2 s^2 dt t, so eta = V s^2 dt/(2 kT).
-TEST(Helfand, WhiteStressGivesItsVariance) {
-  constexpr double s = 3.0, volume = 10.0, dt = 0.01, kT = 2.0;
-  const Helfand::Settings settings{
-      .window = 0.4, .fit_from = 0.2, .dt = dt, .steps_per_lag = 2, .volume = volume, .kT = kT};
-  Helfand helfand(settings, 2), copy(settings, 2);
-  const auto w = support::random_numbers(80000, 7);
-  for (std::size_t k = 0; k < 40000; ++k) {
-    const std::array<double, 2> stress{s * w[2 * k], s * w[2 * k + 1]};
-    helfand.add(stress);
-    if (k == 20001) {
-      support::MemoryArchive archive;
-      helfand.save(archive);
-      copy.load(archive);
-    } else if (k > 20001) {
-      copy.add(stress);
-    }
-  }
-  const odpd::Scalar eta = helfand.viscosity("eta");
-  const double exact = volume * s * s * dt / (2.0 * kT);
-  EXPECT_NEAR(eta.mean, exact, 4.0 * eta.standard_error);
-  // About 1000 independent windows of two components: 4 to 8 %.
-  EXPECT_LT(eta.standard_error, 0.1 * exact);
-  EXPECT_GT(eta.standard_error, 0.02 * exact);
-  EXPECT_EQ(copy.viscosity("eta").mean, eta.mean);
-  EXPECT_EQ(helfand.table().rows.size(), 20u);
-  EXPECT_NEAR(helfand.table().rows[9][0], 0.2, 1e-12);
-  EXPECT_NEAR(helfand.table().rows[9][1], 0.2 * exact, 0.1 * 0.2 * exact);
-}
-
-// What comes back later is subtracted: an impulse w and -w/2 one step on have a quarter of the growth.
-TEST(Helfand, CorrelationsCount) {
-  Helfand helfand({.window = 0.4, .fit_from = 0.2, .dt = 0.01, .volume = 1.0, .kT = 0.5}, 1);
-  const auto w = support::random_numbers(40001, 8);
-  for (std::size_t k = 1; k < w.size(); ++k) {
-    const double stress = w[k] - 0.5 * w[k - 1];
-    helfand.add(std::span<const double>(&stress, 1));
-  }
-  const odpd::Scalar eta = helfand.viscosity("eta");
-  EXPECT_NEAR(eta.mean, 0.25 * 0.01, 4.0 * eta.standard_error);
-  EXPECT_LT(eta.standard_error, 0.1 * eta.mean);
-}
 
 template <class T>
 class ViscosityTest : public ::testing::Test {};

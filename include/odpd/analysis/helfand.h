@@ -6,54 +6,38 @@
 // S dt is summed over all steps, as a step's stress is the mean of its stages and its noise acts throughout the step. At mass 0 the
 // noise alone gives the viscosity of particles that follow the mean flow; what answers it in the same step, and later, corrects
 // that. (The integral of the correlation of S without the noise has the wrong sign for the friction.) Components: S_ab of all
-// pairs a < b, symmetrised, and (S_aa - S_bb)/2, which isotropy makes equivalent. The slope is that of least squares between the
-// lags `fit_from` and `window`; every lag time is an origin.
-#include <cstdint>
-#include <span>
-#include <string>
+// pairs a < b, symmetrised, and (S_aa - S_bb)/2, which isotropy makes equivalent.
+//
+// Without mass what the noise makes of G is known. In a flow of rate 1 with the symmetric gradient E of a component, particles that follow it
+// slip by A = E r at an edge of vector r, and give way by velocities w:
+//
+//   R w = J^T Z A,     G' = -(A - J w) . (f_C + f_B),     V eta_0 = <(A - J w) . Z (A - J w)>
+//
+// with J and Z of pairs/network.h, f_C and f_B the conservative and the random force of each edge. The part of f_B has the variance
+// 2 kT V eta_0 of frozen configurations, and is uncorrelated with how it moves particles, J^T f_B, since J^T Z (A - J w) = 0. So
+//
+//   eta = eta_0 + lim <(int b dt)^2>/(2 V kT t),     b dt = dG + dt (A - J w) . f_B
+//
+// which is what linear response gives as well, as b/kT is what the flow E changes the probability of a configuration by per time.
 #include <vector>
 
-#include "odpd/analysis/block_average.h"
-#include "odpd/analysis/results.h"
-#include "odpd/core/archive.h"
+#include "odpd/dynamics/step_record.h"
+#include "odpd/scene/scene.h"
 
 namespace odpd {
 
-class Helfand {
- public:
-  /// Lags are multiples of steps_per_lag * dt.
-  struct Settings {
-    double window = 0.5, fit_from = 0.2;  ///< time
-    double dt = 0.0;
-    std::int64_t steps_per_lag = 1;
-    double volume = 1.0, kT = 1.0;
-  };
-  Helfand(const Settings& settings, std::size_t components);
+/// What a step adds to G, by component.
+template <int D>
+std::vector<double> helfand_growth(const Scene<D>& scene, const Particles<D>& particles,
+                                   const StepRecord<D>& record);
 
-  /// The step's stress, one number per component.
-  void add(std::span<const double> stress);
-  std::int64_t samples() const { return average_.samples(); }
-  Scalar viscosity(std::string name) const;
-  /// <(dG)^2>/(2 V kT) by lag.
-  Table table() const;
-  Chart chart() const;
-  /// The components of G.
-  const std::vector<double>& integral() const { return integral_; }
-
-  void save(StateWriter& out) const;
-  /// Throws IoError for a state of another width.
-  void load(const StateReader& in);
-
- private:
-  double lag_time(std::size_t lag) const;
-
-  Settings settings_;
-  std::size_t lags_;
-  std::vector<double> integral_;
-  std::vector<double> history_;  // integrals at the last lags + 1 lag times, newest last
-  std::int64_t steps_ = 0;       // since the newest of them
-  std::vector<double> weight_;   // of each lag in the slope
-  BlockAverage average_;         // by lag, then the slope
+/// By component: what the noise makes of that, and V eta_0 of the step's start.
+struct HelfandControl {
+  std::vector<double> made, response;
 };
+/// One solve for each component, to this tolerance; V eta_0 is too large by the square of its error.
+template <int D>
+HelfandControl helfand_control(const Particles<D>& particles, const StepRecord<D>& record,
+                               double tolerance);
 
 }  // namespace odpd

@@ -12,6 +12,9 @@
 // the noise of D itself, of order dt per step, is no memory, so that the diagonal is left out. Where only every c-th step is
 // controlled, each stands for c of them, and pairs within these c for what <D D_c> and <D D_2c> extrapolate to.
 //
+// A stress of the whole box, integrated (analysis/helfand.h), is such a Phi too, but its noise moves nothing: it is uncorrelated with
+// what the configuration does later, and the drift adds to chi (`drift_adds`).
+//
 // chi is the slope of chi(t) t by least squares between the lags `fit_from` and `window`; every lag time is an origin. With one time tau
 // of the memory the line meets t = 0 at (chi_0 - chi) tau.
 #include <cstdint>
@@ -33,6 +36,7 @@ class ModeGrowth {
     double dt = 0.0, kT = 1.0;
     std::size_t waves = 1, modes_per_wave = 1;
     std::int64_t control_every = 0;  ///< steps between controlled ones; 0: none
+    bool drift_adds = false;         ///< to chi
   };
   struct Estimate {
     double mean = std::numeric_limits<double>::quiet_NaN();

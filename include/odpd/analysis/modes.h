@@ -27,6 +27,7 @@
 #include "odpd/analysis/mode_growth.h"
 #include "odpd/analysis/mode_results.h"
 #include "odpd/analysis/observer.h"
+#include "odpd/analysis/observer_keys.h"
 #include "odpd/analysis/waves.h"
 
 namespace odpd {
@@ -35,9 +36,8 @@ struct ModeSettings {
   std::vector<std::int64_t> numbers;    ///< waves in the edge of the box, ascending
   std::vector<int> axes;                ///< directions of k; the box has the same edge along all
   double window = 0.5, fit_from = 0.2;  ///< lags between which chi is fitted (time)
-  std::int64_t control_every = 0;       ///< steps between controlled ones; 0: none
-  double control_tolerance = 0.01;      ///< relative, of the solves for the control
-  std::int64_t extrapolate = 4;         ///< smallest wave numbers that eta_0 + a k^2 is fitted to
+  ControlKeys control = {};
+  std::int64_t extrapolate = 4;  ///< smallest wave numbers that eta_0 + a k^2 is fitted to
 };
 
 template <int D>

@@ -33,4 +33,13 @@ typename Grid<D>::Counts read_cells(const ObserverEntry<D>& entry, double fewest
 template <int D>
 double read_r_max(const ObserverEntry<D>& entry);
 
+/// Solves that take the noise out.
+struct ControlKeys {
+  std::int64_t every = 0;   ///< steps between controlled ones; 0: none
+  double tolerance = 0.01;  ///< relative, of these solves
+};
+
+/// `control`, `control_every`, `control_tolerance`; a window must hold four controlled steps.
+ControlKeys read_control(const Config& config, double window, double dt);
+
 }  // namespace odpd

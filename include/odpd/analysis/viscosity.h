@@ -5,14 +5,15 @@
 //   <name>.stress   shear stress between the walls / that slope, or in the box / the rate of [shear]  (stress.h)
 //   <name>.profile  curvature of the profile under a body force, n f/(-2 c_2)                    (profile.h)
 //   <name>.sine     amplitude under a sinusoidal force, n F L^2/(4 pi^2 k^2 A), k waves in L     (profile.h)
-//   <name>.helfand  growth of the integrated stress in a fully periodic box at rest              (helfand.h)
+//   <name>.helfand  growth of the integrated stress in a fully periodic box at rest              (helfand.h, mode_growth.h)
 //
 // `viscosity` (`<name>.viscosity` under another name) is the one of smallest standard error; a note says which. Errors of quotients
 // take numerator and denominator as independent.
 #include <memory>
 #include <optional>
 
-#include "odpd/analysis/helfand.h"
+#include "odpd/analysis/mode_growth.h"
+#include "odpd/analysis/observer_keys.h"
 #include "odpd/analysis/profile.h"
 #include "odpd/analysis/stress.h"
 #include "odpd/analysis/wall_force.h"
@@ -39,6 +40,7 @@ ViscosityScene viscosity_scene(const Scene<D>& scene);
 struct ViscositySettings {
   std::int64_t bins = 20;               ///< of the profile
   double window = 0.5, fit_from = 0.2;  ///< of helfand (time)
+  ControlKeys control = {};             ///< of helfand
 };
 
 template <int D>
@@ -48,7 +50,7 @@ class Viscosity : public Observer<D> {
             double dt);
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   /// The integrated stress is that up to the step's end.
-  double moment() const override { return helfand_ ? 1.0 : 0.5; }
+  double moment() const override { return growth_ ? 1.0 : 0.5; }
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
@@ -59,12 +61,16 @@ class Viscosity : public Observer<D> {
 
  private:
   std::vector<Scalar> routes(Results& results) const;
+  /// Viscosity from what G^2 grows by.
+  Scalar helfand(const std::string& what, const ModeGrowth::Estimate& growth) const;
+  Table growth_table() const;
 
   ViscosityScene kind_;
   const Scene<D>& scene_;
   std::vector<std::unique_ptr<Observer<D>>>
-      parts_;  // profile, wall-force, stress: what the routes need
-  std::optional<Helfand> helfand_;
+      parts_;                         // profile, wall-force, stress: what the routes need
+  std::optional<ModeGrowth> growth_;  // of the integrated stress
+  double control_tolerance_;
 };
 
 }  // namespace odpd
