@@ -92,6 +92,15 @@ double BlockAverage::ratio_error(std::span<const RatioTerm> terms) const {
   return plateau(std::move(deviation));
 }
 
+double BlockAverage::jackknife_error(std::vector<double> left_out) {
+  // Pseudo-values: deviations of the leave-one-out values, scaled to the deviations of the blocks themselves.
+  const auto n = static_cast<double>(left_out.size());
+  double mean_value = 0.0;
+  for (double v : left_out) mean_value += v / n;
+  for (double& v : left_out) v = (n - 1.0) * (mean_value - v);
+  return plateau(std::move(left_out));
+}
+
 std::vector<double> BlockAverage::column_means(std::int64_t without_block) const {
   std::vector<double> means(width_, 0.0);
   const std::size_t n = blocks_.size() / width_;

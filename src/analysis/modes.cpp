@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odpd/analysis/current_modes.h"
 #include "odpd/analysis/mode_keys.h"
 #include "odpd/core/index.h"
 #include "odpd/operator/edge_sums.h"
@@ -28,8 +29,6 @@ ModeGrowth::Settings growth_settings(const ModeSettings& modes, const Waves<D>& 
 // What keeps a run from showing eta(k) by the spread along waves.
 template <int D>
 void refuse_other_runs(const ObserverEntry<D>& entry) {
-  if (entry.scene.settings().mass > 0.0)
-    entry.config.fail("kind", "'modes' measures particles without mass: set fluid.mass = 0");
   if (!entry.two_stages)
     entry.config.fail(
         "kind",
@@ -56,6 +55,7 @@ Modes<D>::Modes(ObserverSettings settings, const ModeSettings& modes, const Scen
 
 template <int D>
 std::unique_ptr<Observer<D>> Modes<D>::make(const ObserverEntry<D>& entry) {
+  if (entry.scene.settings().mass > 0.0) return CurrentModes<D>::make(entry);
   const Config& config = entry.config;
   ObserverSettings settings = entry.settings();
   if (settings.every != 1)

@@ -93,8 +93,8 @@ std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
     const std::string name = entry.choice("kind", names_of(kinds));
     const auto kind =
         std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.name == name; });
-    observers.push_back(
-        kind->make({name, entry, scene, clock, integrator.in_time, integrator.two_stages}));
+    observers.push_back(kind->make({name, entry, scene, clock, integrator.in_time,
+                                    integrator.two_stages, integrator.half_way_velocity}));
     check_name(entry, kinds, observers);
     if (!kind->of_motion || integrator.in_time) continue;
     log_warning(fmt::format(
@@ -108,8 +108,8 @@ std::vector<std::unique_ptr<Observer<D>>> make_observers(const Config& config,
     const bool there = std::any_of(observers.begin(), observers.end(),
                                    [&](const auto& o) { return o->settings().kind == kind.name; });
     if (kind.always && !there && (integrator.in_time || !kind.of_motion))
-      observers.push_back(
-          kind.make({kind.name, nothing, scene, clock, integrator.in_time, integrator.two_stages}));
+      observers.push_back(kind.make({kind.name, nothing, scene, clock, integrator.in_time,
+                                     integrator.two_stages, integrator.half_way_velocity}));
   }
   return observers;
 }

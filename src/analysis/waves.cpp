@@ -62,13 +62,17 @@ void raise(Turned& at, const Turned& one, std::int64_t by) {
 }  // namespace
 
 template <int D>
-Waves<D>::Waves(std::vector<std::int64_t> numbers, std::vector<int> axes, double edge)
-    : numbers_(std::move(numbers)), axes_(std::move(axes)), edge_(edge) {
+Waves<D>::Waves(std::vector<std::int64_t> numbers, std::vector<int> axes, double edge,
+                bool longitudinal)
+    : numbers_(std::move(numbers)),
+      axes_(std::move(axes)),
+      edge_(edge),
+      longitudinal_(longitudinal) {
   for (std::size_t wave = 0; wave < numbers_.size(); ++wave)
     for (const int axis : axes_)
       for (int c = 0; c < D; ++c)
         for (const bool sine : {false, true})
-          if (c != axis) modes_.push_back({wave, axis, c, sine});
+          if (longitudinal || c != axis) modes_.push_back({wave, axis, c, sine});
 }
 
 template <int D>
@@ -92,16 +96,17 @@ template <int D>
 void Waves<D>::add_sums(std::size_t first, std::size_t last, const std::vector<Vec<D>>& position,
                         const std::vector<Vec<D>>& vector, double* sum) const {
   std::vector<Lanes> part(modes_.size(), Lanes{});
+  const std::size_t components = longitudinal_ ? D : D - 1;
   for (; first < last; first += lanes) {
     const std::size_t there = std::min(lanes, last - first);
     for (std::size_t a = 0; a < axes_.size(); ++a) {
       Lanes turns{};
-      std::array<Lanes, D - 1> across{};  // components, zero where there is no particle
+      std::array<Lanes, D> component{};  // zero where there is no particle
       for (std::size_t lane = 0; lane < there; ++lane) {
         turns[lane] = position[first + lane][axes_[a]] / edge_;
         std::size_t at = 0;
         for (int c = 0; c < D; ++c)
-          if (c != axes_[a]) across[at++][lane] = vector[first + lane][c];
+          if (longitudinal_ || c != axes_[a]) component[at++][lane] = vector[first + lane][c];
       }
       const Turned one = turned(turns);
       Turned wave_at = one;
@@ -109,13 +114,13 @@ void Waves<D>::add_sums(std::size_t first, std::size_t last, const std::vector<V
       for (std::size_t wave = 0; wave < numbers_.size(); ++wave) {
         raise(wave_at, one, numbers_[wave] - number);
         number = numbers_[wave];
-        Lanes* of_mode = part.data() + (wave * axes_.size() + a) * 2 * (D - 1);
-        for (const Lanes& component : across) {
+        Lanes* of_mode = part.data() + (wave * axes_.size() + a) * 2 * components;
+        for (std::size_t c = 0; c < components; ++c) {
           Lanes& with_cosine = *of_mode++;
           Lanes& with_sine = *of_mode++;
           for (std::size_t lane = 0; lane < lanes; ++lane) {
-            with_cosine[lane] += wave_at.cosine[lane] * component[lane];
-            with_sine[lane] += wave_at.sine[lane] * component[lane];
+            with_cosine[lane] += wave_at.cosine[lane] * component[c][lane];
+            with_sine[lane] += wave_at.sine[lane] * component[c][lane];
           }
         }
       }
@@ -173,7 +178,7 @@ std::vector<double> Waves<D>::friction(const Particles<D>& particles,
       }
     }
   particles.ranks().sum(sum);
-  for (double& power : sum) power *= 2.0 / static_cast<double>(modes_per_wave());
+  for (double& power : sum) power *= 1.0 / static_cast<double>(axes_.size() * (D - 1));
   return sum;
 }
 

@@ -91,10 +91,12 @@ constexpr std::array table{
     row<Setd, &S::order>("setd",
                          {.masses = positive, .moves_bodies = false, .friction_limits_dt_from = 2},
                          {"order", &read_order}),
-    row<VelocityVerlet, &S::lambda>(
-        "velocity-verlet",
-        {.masses = positive, .moves_bodies = false, .friction_limits_dt_from = 1},
-        {"lambda", &read_lambda}),
+    row<VelocityVerlet, &S::lambda>("velocity-verlet",
+                                    {.masses = positive,
+                                     .half_way_velocity = true,
+                                     .moves_bodies = false,
+                                     .friction_limits_dt_from = 1},
+                                    {"lambda", &read_lambda}),
     row<Shardlow>("shardlow", {.masses = positive, .moves_bodies = false}),
     row<MonteCarlo, &S::step>(
         "monte-carlo", {.in_time = false, .runs_sheared = false, .repulsion_limits_dt = false},

@@ -358,15 +358,13 @@ TEST(Modes, RefusesWhatIsNoFluidAtRest) {
         parts);
   };
   const auto s = records::periodic<2>(5.0, {{{1.0, 1.0}}, {{3.0, 3.0}}});
-  auto cold = s, heavy = s, dragged = s, pushed = s, walled = s, oblong = s;
+  auto cold = s, dragged = s, pushed = s, walled = s, oblong = s;
   cold.model = odpd::make_dpd<2>({.kT = 0.0});
-  heavy.mass = 1.0;
   dragged.zeta_0 = 0.1;
   pushed.body_force[0] = 1.0;
   records::add_walls(walled, 0.0);
   oblong.box.size[1] = 6.0;
   refused(cold, "", {"case.toml:2", "kind", "kT"});
-  refused(heavy, "", {"kind", "mass = 0"});
   refused(dragged, "", {"kind", "zeta_0"});
   refused(pushed, "", {"kind", "no force or torque"});
   refused(walled, "", {"kind", "walls"});

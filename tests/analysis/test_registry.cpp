@@ -64,7 +64,7 @@ odpd::SceneSettings<2> everything(double mass = 0.0) {
 }
 
 /// A fluid at rest with a free body, for kinds that a wall stops.
-odpd::SceneSettings<2> at_rest() {
+odpd::SceneSettings<2> at_rest(double mass = 0.0) {
   const Config config = Config::from_text(R"(
     [box]
     size = [6.0, 6.0]
@@ -80,7 +80,7 @@ odpd::SceneSettings<2> at_rest() {
     radius = 0.3
     positions = [{ at = [2.0, 3.0] }]
   )",
-                                          "at rest");
+                                          "at rest", {"fluid.mass=" + std::to_string(mass)});
   return odpd::read_scene_settings<2>(config);
 }
 
@@ -190,6 +190,8 @@ TEST(EveryKind, NamesWhatItGivesAndContinues) {
   const std::string modes = "kind = \"modes\"\nnumbers = [1, 3]\nwindow = 0.6\n";
   expect_named_and_continued(at_rest(), {modes, modes + "control = true\n",
                                          modes + "control = true\ncontrol_every = 3\n"});
+  expect_named_and_continued(at_rest(1.0),
+                             {"kind = \"modes\"\nnumbers = [1, 3]\n", modes + "every = 2\n"});
 }
 
 class Registry : public ::testing::Test, protected WholeRun {};

@@ -189,6 +189,10 @@ dt = 0.005
 [integrator]
 name = "velocity-verlet"
 dt = 0.005
+[[observe]]
+kind = "modes"
+numbers = [1, 4]
+window = 0.04
 )"},
                                          {"shardlow", R"(
 [integrator]

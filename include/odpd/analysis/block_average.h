@@ -37,7 +37,14 @@ class BlockAverage {
 
   /// Jackknife error of any function of the vector of column means.
   template <class Function>
-  double jackknife_error(const Function& function) const;
+  double jackknife_error(const Function& function) const {
+    return jackknife_error(left_out(function));
+  }
+  /// The same in two steps, for functions that share what costs time: values without one block each, then the error of whatever
+  /// follows from each of them.
+  template <class Function>
+  auto left_out(const Function& function) const;
+  static double jackknife_error(std::vector<double> left_out);
 
   void save(StateWriter& out, const std::string& name) const;
   /// Throws IoError for a state of another width.
@@ -58,15 +65,11 @@ class BlockAverage {
 };
 
 template <class Function>
-double BlockAverage::jackknife_error(const Function& function) const {
+auto BlockAverage::left_out(const Function& function) const {
   const auto n = static_cast<std::int64_t>(blocks_.size() / width_);
-  std::vector<double> values;
+  std::vector<decltype(function(column_means(0)))> values;
   for (std::int64_t k = 0; k < n; ++k) values.push_back(function(column_means(k)));
-  // Pseudo-values: deviations of the leave-one-out values, scaled to the deviations of the blocks themselves.
-  double mean_value = 0.0;
-  for (double v : values) mean_value += v / static_cast<double>(n);
-  for (double& v : values) v = static_cast<double>(n - 1) * (mean_value - v);
-  return plateau(values);
+  return values;
 }
 
 }  // namespace odpd

@@ -44,6 +44,7 @@ template <int D>
 class Modes : public Observer<D> {
  public:
   Modes(ObserverSettings settings, const ModeSettings& modes, const Scene<D>& scene, double dt);
+  /// With mass: CurrentModes.
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   /// Phi is that up to the step's end.
   double moment() const override { return 1.0; }

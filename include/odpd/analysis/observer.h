@@ -47,6 +47,8 @@ struct ObserverEntry {
   bool in_time = true;
   /// As IntegratorTraits::two_stages.
   bool two_stages = true;
+  /// As IntegratorTraits::half_way_velocity.
+  bool half_way_velocity = false;
 
   /// Reads the keys of every observer: name, every, series, from, until. Throws ConfigError.
   ObserverSettings settings(std::int64_t default_every = 1) const;

@@ -98,6 +98,8 @@ struct IntegratorTraits {
   bool in_time = true;
   /// Two solves a step, with the same noise: the record has a corrector and `respond`.
   bool two_stages = false;
+  /// v_mid is the velocity of half a step that the scheme goes on from, and v_start the mean of two of them.
+  bool half_way_velocity = false;
   bool moves_bodies = true;  ///< rigid bodies of unknown motion
   bool runs_sheared = true;  ///< under [shear]
   /// Explicit in the conservative force: its stiffness limits dt.
