@@ -67,7 +67,7 @@ Chart ModeResults::chart(const Results& results, std::size_t waves) const {
   Chart chart{
       .title = "Viscosity by wave number", .x_label = "k", .y_label = "eta(k)", .curves = {}};
   Curve eta{.title = "measured", .x = k, .y = {}, .error = {}};
-  Curve affine{.title = "eta_inf(k)", .x = k, .y = {}, .error = {}, .line = true};
+  Curve affine{.title = "eta_inf(k)", .x = k, .y = {}, .error = {}};
   for (std::size_t wave = 0; wave < k.size(); ++wave) {
     const Scalar* measured = results.find(scalar("eta", wave));
     eta.y.push_back(measured->mean);

@@ -217,7 +217,12 @@ template <int D>
 Chart Modes<D>::lag_chart(const Table& by_lag) const {
   Chart chart{.title = "Viscosity by lag", .x_label = "t", .y_label = "eta(t; k)", .curves = {}};
   for (std::size_t wave = 0; wave < waves_.count(); ++wave) {
-    Curve curve{.title = fmt::format("k = {:.4g}", waves_.k(wave)), .x = {}, .y = {}, .error = {}};
+    Curve curve{.title = fmt::format("k = {:.4g}", waves_.k(wave)),
+                .x = {},
+                .y = {},
+                .error = {},
+                .line = true,
+                .points = false};
     for (const auto& row : by_lag.rows) {
       curve.x.push_back(row[0]);
       curve.y.push_back(row[1 + 2 * wave]);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "odpd/app/fluid_report.h"
 #include "odpd/app/memory.h"
 #include "odpd/app/report.h"
@@ -13,6 +15,13 @@ namespace {
 
 std::string line(bool yes, const char* what, const std::string& why) {
   return fmt::format("  {} {:<22} {}\n", yes ? "+" : "-", what, why);
+}
+
+template <int D>
+double solves_of_observers(const Simulation<D>& simulation) {
+  double solves = 0.0;
+  for (const auto& observer : simulation.observers()) solves += observer->solves();
+  return solves;
 }
 
 // Of a scheme that moves the particles in time.
@@ -28,8 +37,12 @@ std::string modelled_motion(const Simulation<D>& simulation) {
   out += line(scene.settings().zeta_0 > 0.0, "uniform drag",
               scene.settings().zeta_0 > 0.0 ? "zeta_0 > 0, with its noise" : "none given");
   const int solves = simulation.integrator().solves();
+  const double observed = solves_of_observers(simulation);
   out += line(solves > 0, "solves per step",
-              fmt::format("{}, integrator {}", solves, simulation.integrator().name()));
+              fmt::format("{}, integrator {}{}", solves, simulation.integrator().name(),
+                          observed > 0.0
+                              ? fmt::format(", and {:g} of observers while they measure", observed)
+                              : ""));
   if (solves == 0) return out;
   const std::string& solver = simulation.settings().solver.name;
   out +=
@@ -86,6 +99,8 @@ double peak_bytes(const Simulation<D>& simulation, const Stage<D>& stage) {
     size.constituents += static_cast<double>(body.members.size());
   }
   double bytes = run_bytes<D>(size);
+  // Force, answer and what lies between: of one particle, seven vectors.
+  if (solves_of_observers(simulation) > 0.0) bytes += 7.0 * D * sizeof(double) * size.particles;
   if (simulation.settings().solver.name != "pcg")
     bytes += static_cast<double>(stage.report.memory_bytes);
   if (simulation.integrator().solves() == 1) bytes -= static_cast<double>(stage.network.bytes());
@@ -109,6 +124,11 @@ std::string dry_run_text(Simulation<D>& simulation) {
   const double seconds = watch.seconds();
   const Stage<D>& stage = record.start;
   const double bytes = peak_bytes(simulation, stage);
+  // Solves of observers, as long as those of the run although they may be to a looser tolerance.
+  const double measured_steps = static_cast<double>(clock.total_steps - clock.equilibration_steps);
+  const double total =
+      seconds * static_cast<double>(clock.total_steps) +
+      measured_steps * solves_of_observers(simulation) * stage.report.solve_seconds;
   std::string out = fmt::format(
       "{}\n  {}D, {}, {} edges ({:.1f} per particle)\n", simulation.settings().title, D,
       population_text(particles), stage.network.size(),
@@ -121,8 +141,8 @@ std::string dry_run_text(Simulation<D>& simulation) {
   out += fmt::format(
       "  about {:.1f} MiB, about {:.3g} s at {:.3g} ms per step (measured once, on {} "
       "thread(s))\n\n",
-      bytes / (1024.0 * 1024.0), seconds * static_cast<double>(clock.total_steps), 1e3 * seconds,
-      threads());
+      bytes / (1024.0 * 1024.0), total,
+      1e3 * total / static_cast<double>(std::max<std::int64_t>(1, clock.total_steps)), threads());
   return out + modelled(simulation) + fluid;
 }
 

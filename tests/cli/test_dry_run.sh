@@ -21,6 +21,11 @@ expect_exit 0 "$odpd" run channel --dry-run --set fluid.kT=0.0 --set fluid.a=0.0
 expect_text "$out_text" '48 free particles' '36 of known velocity' '- conservative force' '- random force' '+ walls' \
   '2 [[wall]]' '+ body force' '+ solves per step' '1, integrator euler' '+ assembled matrix'
 
+# Solves of observers, in the part that they measure: of two components, and of four modes in every other step.
+expect_exit 0 "$odpd" run box --dry-run --set \
+  'observe=[{kind="viscosity",control=true},{kind="modes",numbers=[1],control=true,control_every=2}]'
+expect_text "$out_text" '2, integrator trapezoidal, and 4 of observers while they measure'
+
 # The fluid in both languages. By hand at n = 4, s = 1/2: eta = 4.5 16 (64 pi/315)/16, p = 4 + 18.5 16 pi/24.
 expect_exit 0 "$odpd" run box --dry-run
 expect_text "$out_text" 'a = 18.5 s_bar = 1' 'gamma = 4.5 sigma = 3' 'eta_friction = 2.87231' 'pressure = 42.7463' \

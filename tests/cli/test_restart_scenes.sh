@@ -111,6 +111,34 @@ for scheme in trapezoidal implicit monte-carlo; do
   expect_exit 0 run bonded --threads 1 "${settings[@]}" --restart "bonded-$scheme-parts/checkpoint.h5"
   same_run "bonded-$scheme" "bonded-$scheme-parts"
 done
+# What fluctuates at rest, with solves of its own, of molecules and bodies.
+cp -r bonded controlled
+cat >>controlled/case.toml <<'CASE'
+
+[[body]]
+shape = "ring"
+radius = 0.3
+points_on_ring = 4
+count = 3
+
+[[observe]]
+kind = "modes"
+numbers = [1, 3]
+window = 0.04
+control = true
+control_every = 2
+series = true
+
+[[observe]]
+kind = "viscosity"
+window = 0.04
+control = true
+CASE
+settings=(--set neighbours.reorder_every=4 --set solver.preconditioner=multilevel)
+expect_exit 0 run controlled --threads 1 "${settings[@]}" --out controlled-whole
+expect_exit 0 run controlled --threads 2 "${settings[@]}" --set run.duration=0.05 --out controlled-parts
+expect_exit 0 run controlled --threads 1 "${settings[@]}" --restart controlled-parts/checkpoint.h5
+same_run controlled-whole controlled-parts
 if have_h5py; then
   expect "$python" -c "
 import h5py

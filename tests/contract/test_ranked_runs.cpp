@@ -163,6 +163,28 @@ dt = 0.005
 kind = "viscosity"
 window = 0.02
 )"},
+                                         {"controlled", R"(
+[[body]]
+name = "ring"
+shape = "ring"
+radius = 0.3
+points_on_ring = 6
+count = 2
+[integrator]
+dt = 0.005
+[[observe]]
+kind = "viscosity"
+window = 0.02
+control = true
+control_tolerance = 1e-9
+[[observe]]
+kind = "modes"
+numbers = [1, 3]
+window = 0.04
+control = true
+control_every = 2
+control_tolerance = 1e-9
+)"},
                                          {"implicit", R"(
 [integrator]
 name = "implicit"

@@ -45,6 +45,12 @@ class ModeGrowth {
   explicit ModeGrowth(const Settings& settings);
 
   bool controlled() const { return settings_.control_every > 0; }
+  /// Per step, in the mean.
+  double solves() const {
+    return controlled() ? static_cast<double>(integral_.size()) /
+                              static_cast<double>(settings_.control_every)
+                        : 0.0;
+  }
   /// The next step is to be added with what its control tells.
   bool control_is_due() const {
     return controlled() && (steps_ + 1) % settings_.control_every == 0;

@@ -48,6 +48,7 @@ class Modes : public Observer<D> {
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   /// Phi is that up to the step's end.
   double moment() const override { return 1.0; }
+  double solves() const override { return growth_.solves(); }
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;

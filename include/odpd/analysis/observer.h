@@ -60,6 +60,8 @@ class Observer {
   Observer(const Observer&) = delete;
   Observer& operator=(const Observer&) = delete;
   virtual ~Observer() = default;
+  /// What it asks StepRecord::respond for: solves per step of the measured part, in the mean.
+  virtual double solves() const { return 0.0; }
   const ObserverSettings& settings() const { return settings_; }
 
   bool is_due(const Clock& clock) const {

@@ -51,6 +51,7 @@ class Viscosity : public Observer<D> {
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   /// The integrated stress is that up to the step's end.
   double moment() const override { return growth_ ? 1.0 : 0.5; }
+  double solves() const override { return growth_ ? growth_->solves() : 0.0; }
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
