@@ -88,7 +88,7 @@ inline Fraction rotors_turned_away(const std::string& scheme, std::int64_t steps
   const DpdModel<2> model(1, {DpdParameters{.a = 0.0, .gamma = 1.5, .s = 0.5, .cutoff = 2.0}});
   const Rotors torques;
   Dynamics<2> dynamics(box, particles, model, torques,
-                       make_solver({.name = "pcg", .tolerance = 1e-8}), DynamicsSettings{});
+                       make_solver({.name = "pcg", .tolerance = 1e-5}), DynamicsSettings{});
   const auto integrator = make_integrator<2>(scheme);
   std::vector<double> turned(10, 0.0);
   for (Clock clock{.dt = dt, .total_steps = steps}; !clock.finished(); clock.advance()) {
