@@ -156,13 +156,19 @@ auto CurrentModes<D>::estimates(const std::vector<double>& means,
         std::span(means).subspan(correlator_.first_column(wave, false), correlator_.lags(wave) + 1);
     const MaxwellFit maxwell = fit_maxwell(c, interval());
     const double norm = has_bodies() ? c[0] : 1.0;
-    // Of an exponential that has this area.
-    const double area = norm * decay_area(c, interval(), joins[wave], maxwell) / interval();
-    const double between = (2.0 * area - 1.0) / (2.0 * area + 1.0);
-    const double q = this->settings().every == 1 ? between : std::pow(between, 1.0 / every);
-    const auto of_rate = [&](double rate) { return viscosity(wave, std::exp(-rate * dt_)); };
-    estimates.push_back({viscosity(wave, q), of_rate(fit_exponential(c, interval())),
-                         of_rate(maxwell.rate), maxwell.tau});
+    // By the exponential of this area, over c(0) and in intervals.
+    const auto of_area = [&](double area) {
+      const double between = (2.0 * norm * area - 1.0) / (2.0 * norm * area + 1.0);
+      return viscosity(wave,
+                       this->settings().every == 1 ? between : std::pow(between, 1.0 / every));
+    };
+    const auto of_rate = [&](double rate) {
+      const double between = std::exp(-rate * interval());
+      return of_area(0.5 * (1.0 + between) / (1.0 - between));
+    };
+    estimates.push_back({of_area(decay_area(c, interval(), joins[wave], maxwell) / interval()),
+                         of_rate(fit_exponential(c, interval())), of_rate(maxwell.rate),
+                         maxwell.tau});
   }
   return estimates;
 }
