@@ -1,7 +1,6 @@
 #include "odpd/analysis/current_decay.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,7 +9,7 @@ namespace odpd {
 namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-constexpr int most_iterations = 60;
+constexpr int most_iterations = 40;
 constexpr double converged = 1e-10;
 
 // Where c falls to 1/e of c[0], for a fit to begin with.
@@ -31,16 +30,16 @@ double square_miss(std::span<const double> c, double interval, const MaxwellFit&
 
 }  // namespace
 
-std::vector<MaxwellFit::Term> MaxwellFit::terms() const {
+std::array<MaxwellFit::Term, 2> MaxwellFit::terms() const {
   if (tau <= 0.0) {
     const double w = std::sqrt(1.0 + 4.0 * std::abs(tau) * rate);
-    return {{0.5 * (1.0 + 1.0 / w), 2.0 * rate / (1.0 + w)}};
+    return {Term{0.5 * (1.0 + 1.0 / w), 2.0 * rate / (1.0 + w)}, Term{0.0, rate}};
   }
   constexpr double smallest = 1e-4;  // the terms part at W = 0, where both grow beyond bounds
   std::complex<double> w = std::sqrt(std::complex(1.0 - 4.0 * tau * rate));
   if (std::abs(w) < smallest) w = smallest;
-  return {{0.5 * (1.0 + 1.0 / w), 2.0 * rate / (1.0 + w)},
-          {0.5 * (1.0 - 1.0 / w), (1.0 + w) / (2.0 * tau)}};
+  return {Term{0.5 * (1.0 + 1.0 / w), 2.0 * rate / (1.0 + w)},
+          Term{0.5 * (1.0 - 1.0 / w), (1.0 + w) / (2.0 * tau)}};
 }
 
 double MaxwellFit::operator()(double t) const {

@@ -17,6 +17,7 @@ namespace {
 constexpr double decays_in_window = 5.0, decays_before_fit = 2.0;
 constexpr std::int64_t fewest_lags = 8, most_lags = 2000;
 constexpr std::int64_t samples_per_friction = 100;
+constexpr std::size_t lags_in_fit = 100;
 
 template <int D>
 std::vector<bool> which_are_longitudinal(const Waves<D>& waves) {
@@ -24,6 +25,13 @@ std::vector<bool> which_are_longitudinal(const Waves<D>& waves) {
   for (std::size_t m = 0; m < waves.modes_per_wave(); ++m)
     longitudinal.push_back(waves.modes()[m].component == waves.modes()[m].axis);
   return longitudinal;
+}
+
+// Every so many-th value from the first on, for fits: neighbours among many lags say the same.
+std::vector<double> thinned(std::span<const double> c, std::size_t stride) {
+  std::vector<double> thin;
+  for (std::size_t lag = 0; lag < c.size(); lag += stride) thin.push_back(c[lag]);
+  return thin;
 }
 
 }  // namespace
@@ -154,7 +162,10 @@ auto CurrentModes<D>::estimates(const std::vector<double>& means,
   for (std::size_t wave = 0; wave < waves_.count(); ++wave) {
     const auto c =
         std::span(means).subspan(correlator_.first_column(wave, false), correlator_.lags(wave) + 1);
-    const MaxwellFit maxwell = fit_maxwell(c, interval());
+    const std::size_t stride = 1 + (c.size() - 1) / lags_in_fit;
+    const std::vector<double> thin = thinned(c, stride);
+    const double between_fitted = interval() * static_cast<double>(stride);
+    const MaxwellFit maxwell = fit_maxwell(thin, between_fitted);
     const double norm = has_bodies() ? c[0] : 1.0;
     // By the exponential of this area, over c(0) and in intervals.
     const auto of_area = [&](double area) {
@@ -167,7 +178,7 @@ auto CurrentModes<D>::estimates(const std::vector<double>& means,
       return of_area(0.5 * (1.0 + between) / (1.0 - between));
     };
     estimates.push_back({of_area(decay_area(c, interval(), joins[wave], maxwell) / interval()),
-                         of_rate(fit_exponential(c, interval())), of_rate(maxwell.rate),
+                         of_rate(fit_exponential(thin, between_fitted)), of_rate(maxwell.rate),
                          maxwell.tau});
   }
   return estimates;

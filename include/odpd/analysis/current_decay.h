@@ -8,9 +8,9 @@
 // Maxwell's is that of the memory G(t) = (eta/tau) exp(-t/tau), with a W that may be imaginary. To first order in lam tau it is
 // (1 + lam tau) exp(-lam t) once the memory is over. A tau below 0 is taken to say so alone: friction is larger at first, and the slow decay
 // begins below 1. Fits are unweighted least squares.
+#include <array>
 #include <complex>
 #include <span>
-#include <vector>
 
 namespace odpd {
 
@@ -26,7 +26,7 @@ struct MaxwellFit {
   struct Term {
     std::complex<double> amplitude, rate;
   };
-  std::vector<Term> terms() const;
+  std::array<Term, 2> terms() const;
 };
 
 /// c: values 0, 1, 2, ... intervals apart. The rate; NaN where c does not decay.
