@@ -65,14 +65,18 @@ double fit_exponential(std::span<const double> c, double interval) {
   if (!(c[0] > 0.0) || !(rate > 0.0)) return undefined;
   double best = square_miss(c, interval, {rate, 0.0});
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    double along = 0.0, square = 0.0;
+    double along = 0.0, square = 0.0, curvature = 0.0;
     for (std::size_t lag = 1; lag < c.size(); ++lag) {
       const double turn = rate * interval * static_cast<double>(lag);
       const double e = std::exp(-turn);
-      along -= (c[lag] / c[0] - e) * turn * e;
+      const double miss = c[lag] / c[0] - e;
+      along -= miss * turn * e;
       square += turn * turn * e * e;
+      curvature -= miss * (turn - 1.0) * turn * e;
     }
-    double change = std::clamp(along / square, -0.5, 0.5);  // of the rate's logarithm
+    // Newton's step of the rate's logarithm, Gauss and Newton's far from the least.
+    curvature += square;
+    double change = std::clamp(along / (curvature > 0.0 ? curvature : square), -0.5, 0.5);
     double miss = square_miss(c, interval, {rate * std::exp(change), 0.0});
     while (miss > best && std::abs(change) > converged) {
       change *= 0.5;
@@ -82,7 +86,7 @@ double fit_exponential(std::span<const double> c, double interval) {
     rate *= std::exp(change);
     best = miss;
   }
-  return undefined;
+  return rate;
 }
 
 // Levenberg and Marquardt's way, in the logarithm of the rate and in tau over the time of the exponential.
