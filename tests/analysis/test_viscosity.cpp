@@ -4,9 +4,11 @@
 #include <numbers>
 
 #include "odpd/analysis/divergence.h"
+#include "odpd/analysis/registry.h"
 #include "odpd/analysis/viscosity.h"
 #include "records.h"
 #include "support/dimensions.h"
+#include "support/errors.h"
 #include "support/memory_archive.h"
 
 namespace {
@@ -16,6 +18,27 @@ using odpd::Scene;
 using odpd::Vec;
 using odpd::Viscosity;
 using odpd::ViscosityScene;
+
+TEST(Viscosity, ControlKnowsTheNoiseOfMasslessTwoStageSchemes) {
+  const auto refused = [](double mass, const char* integrator, const std::string& keys,
+                          std::initializer_list<const char*> parts) {
+    auto s = records::periodic<2>(5.0, {{{1.0, 1.0}}, {{3.0, 3.0}}});
+    s.mass = mass;
+    const Scene<2> scene(s);
+    const odpd::Config config = odpd::Config::from_text(
+        "[[observe]]\nkind = \"viscosity\"\ncontrol = true\n" + keys, "case.toml");
+    support::expect_error<odpd::ConfigError>(
+        [&] {
+          odpd::make_observers<2>(config, scene, Clock{.dt = 0.02},
+                                  odpd::integrator_traits(integrator));
+        },
+        parts);
+  };
+  refused(1.0, "trapezoidal", "", {"case.toml:3", "control", "fluid.mass = 0"});
+  refused(0.0, "euler", "", {"control", "'trapezoidal'"});
+  refused(0.0, "trapezoidal", "control_tolerance = 1.0\n", {"control_tolerance", "less than 1"});
+  refused(0.0, "trapezoidal", "control_every = 20\n", {"control_every", "four"});
+}
 
 template <class T>
 class ViscosityTest : public ::testing::Test {};
