@@ -184,7 +184,7 @@ void mark_read(ConfigNode& node) {
 
 ConfigValues values_below(ConfigNode& node) {
   mark_read(node);
-  ConfigValues values = flat_values(node);
+  ConfigValues values = flat_values(node, true);
   for (auto& [path, text] : values) path.erase(0, std::min(path.size(), node.path.size() + 1));
   return values;
 }

@@ -196,15 +196,16 @@ std::string document_text(const ConfigNode& root) {
   return out;
 }
 
-std::vector<std::pair<std::string, std::string>> flat_values(const ConfigNode& node) {
+std::vector<std::pair<std::string, std::string>> flat_values(const ConfigNode& node,
+                                                             bool whole_arrays) {
   std::vector<std::pair<std::string, std::string>> values;
-  const auto descend = [&values](const ConfigNode& below) {
-    const auto more = flat_values(below);
+  const auto descend = [&](const ConfigNode& below) {
+    const auto more = flat_values(below, whole_arrays);
     values.insert(values.end(), more.begin(), more.end());
   };
   if (const ConfigTable* table = node.table()) {
     for (const auto& [key, below] : table->members) descend(*below);
-  } else if (is_array_of_tables(node)) {
+  } else if (!whole_arrays && is_array_of_tables(node)) {
     for (const auto& element : node.array()->elements) descend(*element);
   } else {
     values.emplace_back(node.path, value_text(node));

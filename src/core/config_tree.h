@@ -93,7 +93,9 @@ std::string describe(const ConfigNode& node);
 std::string value_text(const ConfigNode& node);
 /// The root table and everything below it as a TOML document.
 std::string document_text(const ConfigNode& root);
-/// (path, value_text) of every value below `node` that is not a table or an array of tables.
-std::vector<std::pair<std::string, std::string>> flat_values(const ConfigNode& node);
+/// (path, value_text) of every value below `node` that is not a table, and of those of arrays of tables either one by one or,
+/// with `whole_arrays`, as one value each.
+std::vector<std::pair<std::string, std::string>> flat_values(const ConfigNode& node,
+                                                             bool whole_arrays = false);
 
 }  // namespace odpd

@@ -261,14 +261,17 @@ TEST(ConfigValuesOfAnother, come_with_relative_paths_and_count_as_read) {
 fluid.a = 18.5
 integrator = { name = "euler", dt = 1e-3 }
 walls = [1, 2]
+body = [{ at = [1.0, 2.0] }, { at = [3.0, 4.0] }]
 [axis]
 values = [0.5, "x", { label = "L", solver.name = "pcg" }]
 )",
                                      "study.toml");
-  EXPECT_EQ(c.values("set"), (odpd::ConfigValues{{"fluid.a", "18.5"},
-                                                 {"integrator.name", "\"euler\""},
-                                                 {"integrator.dt", "0.001"},
-                                                 {"walls", "[1, 2]"}}));
+  EXPECT_EQ(c.values("set"),
+            (odpd::ConfigValues{{"fluid.a", "18.5"},
+                                {"integrator.name", "\"euler\""},
+                                {"integrator.dt", "0.001"},
+                                {"walls", "[1, 2]"},
+                                {"body", "[{at = [1.0, 2.0]}, {at = [3.0, 4.0]}]"}}));
   EXPECT_EQ(c.table("set").values("walls"), (odpd::ConfigValues{{"", "[1, 2]"}}));
   EXPECT_TRUE(c.values("absent").empty());
   EXPECT_EQ(c.table("axis").elements("values"),

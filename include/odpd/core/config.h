@@ -76,7 +76,7 @@ class Config {
   std::vector<Config> tables(const std::string& key) const;
 
   // Values of keys that somebody else will read, such as those of another file.
-  /// All below `key`, paths relative to it ("" for the value of `key` itself); none when absent.
+  /// All below `key`, paths relative to it ("" for the value of `key` itself), an array of tables as one value; none when absent.
   ConfigValues values(const std::string& key) const;
   /// The same for each element of the array `key`, which is required.
   std::vector<ConfigValues> elements(const std::string& key) const;
