@@ -33,8 +33,14 @@ study incompressibility
 expect_verdict incompressibility 'm = 0,2' divergence.relative biased
 study incompressibility_repulsion
 expect test "$(grep -c 'blew up' incompressibility_repulsion/study.csv)" -eq 0
+study incompressibility_alpha
+study colloid_kinds
+study cylinder_levels
+for name in incompressibility_alpha colloid_kinds cylinder_levels; do
+  expect test "$(grep -c 'blew up' $name/study.csv)" -eq 0
+done
 for name in integrators_2d small_mass tolerance stability_dt_a stability_low_density cylinder_drag \
-  incompressibility incompressibility_repulsion; do
+  incompressibility incompressibility_repulsion incompressibility_alpha colloid_kinds cylinder_levels; do
   expect test -s "$name/study.html"
   expect test -z "$(grep ',missing,' "$name/study.csv")"
 done
