@@ -124,9 +124,8 @@ void CurrentModes<D>::measure(const Clock&, const Particles<D>& particles,
 }
 
 template <int D>
-double CurrentModes<D>::viscosity(std::size_t wave, double q) const {
-  const double rate = (modes_.half_way ? 1.0 - q : 2.0 * (1.0 - q) / (1.0 + q)) / dt_;
-  return rho() * rate / (named_.k[wave] * named_.k[wave]);
+double CurrentModes<D>::mean_square(std::span<const double> c) const {
+  return modes_.half_way && this->settings().every == 1 ? 0.5 * (c[0] + c[1]) : c[0];
 }
 
 template <int D>
@@ -166,20 +165,24 @@ auto CurrentModes<D>::estimates(const std::vector<double>& means,
     const std::vector<double> thin = thinned(c, stride);
     const double between_fitted = interval() * static_cast<double>(stride);
     const MaxwellFit maxwell = fit_maxwell(thin, between_fitted);
-    const double norm = has_bodies() ? c[0] : 1.0;
-    // By the exponential of this area, over c(0) and in intervals.
+    const bool known_only = has_bodies() || (modes_.half_way && this->settings().every > 1);
+    const double norm = known_only ? 1.0 : mean_square(c);
+    // Of the area under c/c(0): in steps, by the exponential of this area where some were left out.
     const auto of_area = [&](double area) {
-      const double between = (2.0 * norm * area - 1.0) / (2.0 * norm * area + 1.0);
-      return viscosity(wave,
-                       this->settings().every == 1 ? between : std::pow(between, 1.0 / every));
+      if (this->settings().every > 1) {
+        const double intervals = area / interval();
+        const double q = std::pow((2.0 * intervals - 1.0) / (2.0 * intervals + 1.0), 1.0 / every);
+        area = 0.5 * dt_ * (1.0 + q) / (1.0 - q);
+      }
+      return rho() * norm / (named_.k[wave] * named_.k[wave] * c[0] * area);
     };
     const auto of_rate = [&](double rate) {
-      const double between = std::exp(-rate * interval());
-      return of_area(0.5 * (1.0 + between) / (1.0 - between));
+      const double q = std::exp(-rate * interval());
+      return of_area(0.5 * interval() * (1.0 + q) / (1.0 - q));
     };
-    estimates.push_back({of_area(decay_area(c, interval(), joins[wave], maxwell) / interval()),
+    estimates.push_back({of_area(decay_area(c, interval(), joins[wave], maxwell)),
                          of_rate(fit_exponential(thin, between_fitted)), of_rate(maxwell.rate),
-                         maxwell.tau});
+                         maxwell.tau, mean_square(c)});
   }
   return estimates;
 }
@@ -224,18 +227,13 @@ void CurrentModes<D>::add_results(Results& results) const {
     add("tau", [](const Estimate& e) { return e.tau; });
     taus.push_back(results.scalars.back());
     add("memory", [&](const Estimate& e) { return memory_time(wave, e); });
-    Scalar affine{named_.scalar("eta_inf", wave)}, start{named_.scalar("equipartition", wave)};
+    add("equipartition", [](const Estimate& e) { return e.mean_square; });
+    Scalar affine{named_.scalar("eta_inf", wave)};
     if (friction_.samples() > 0) {
       affine.mean = eta_inf(wave);
       affine.standard_error = affine.mean * friction_.standard_error(wave) / friction_.mean(wave);
     }
-    if (measured) {
-      const std::size_t column = correlator_.first_column(wave, false);
-      start.mean = average.mean(column);
-      start.standard_error = average.standard_error(column);
-    }
     results.scalars.push_back(std::move(affine));
-    results.scalars.push_back(std::move(start));
   }
   named_.add_extrapolation(results, extrapolate_, [&](const ModeResults::OfViscosities& function) {
     return error_of([&](const std::vector<Estimate>& e) {

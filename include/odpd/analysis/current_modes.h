@@ -12,15 +12,14 @@
 // v is the velocity that the scheme steps from. For velocity-verlet that is the half-way one: the mean of two of them, which it gives
 // for a full step, decays from its value at t = 0 as if there were a memory of tau = dt/2.
 //
-// Steps. A mode that a scheme takes from J to q J (and noise) in a step has the rate
+// Steps. The area is a sum over steps by the trapezoidal rule. For a mode that falls by q = 1 - lam dt (half-way velocities) or
+// (2 - lam dt)/(2 + lam dt) (trapezoidal) in each, and has kT/m at full steps, it is 1/lam for any lam dt: that by which the scheme
+// answers a steady force. (Half-way velocities have more than kT/m then, c(0) = 1/(1 - lam dt/2).) With `every` above 1 it is that of
+// the steps in between, as an exponential has it.
 //
-//   lam = (1 - q)/dt (half-way velocities),     2 (1 - q)/((1 + q) dt) (full-step ones)
-//
-// by which it answers a steady force. It is exact for velocity-verlet (lambda = 1/2) and for trapezoidal, and to second order
-// for the others. Areas are sums over steps by the trapezoidal rule, which give just these.
-//
-// Noise. C(k, 0) is known, but what a run has in its place is not, and dividing c by c(0) takes a third of the error out, and what kT a scheme
-// is off. With rigid bodies C(k, 0) is less than k^2 kT/m, as they do not follow a wave, and areas are those of C/(k^2 kT/m).
+// Noise. The mean square of J at full steps is known, but what a run has in its place is not: dividing c by it takes a third of the error
+// out, and what kT a scheme is off. With rigid bodies it is less than that of k^2 kT/m, as they do not follow a wave, and areas are
+// those of C/(k^2 kT/m), as they are where a half-way velocity is seen in some steps only.
 //
 // Memory. White noise makes an instantaneous friction eta_inf(k) = 2 <phi R phi>/(V k^2). With one time tau_m for the rest,
 //
@@ -29,6 +28,7 @@
 // with tau of Maxwell's fit, as both have the moment int t G(t) dt. Particles give way to one another after m/zeta, so that eta < eta_inf
 // at masses near 1 and G' = -omega Im eta* is negative: such a fluid stores nothing.
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -66,15 +66,15 @@ class CurrentModes : public Observer<D> {
  private:
   // What follows from c(t) of a wave number.
   struct Estimate {
-    double eta, exponential, maxwell, tau;
+    double eta, exponential, maxwell, tau, mean_square;
   };
   double interval() const { return dt_ * static_cast<double>(this->settings().every); }
   double rho() const;
   double eta_inf(std::size_t wave) const;
   bool has_bodies() const { return !scene_.particles().bodies.empty(); }
   void choose_lags();
-  /// Of c/c(0) that falls to q in a step.
-  double viscosity(std::size_t wave, double q) const;
+  /// Of J at full steps over its exact value, where c has it; else c(0).
+  double mean_square(std::span<const double> c) const;
   /// joins: where fits take over from c(t), by wave.
   std::vector<Estimate> estimates(const std::vector<double>& means,
                                   const std::vector<std::size_t>& joins) const;
