@@ -14,7 +14,9 @@ namespace odpd {
 
 namespace {
 
-constexpr double decays_in_window = 5.0, decays_before_fit = 2.0;
+// The memory goes on for several times m/friction, in which short waves decay more than once.
+constexpr double decays_in_window = 5.0, memories_in_window = 10.0;
+constexpr double fewest_decays = 2.0, most_decays_before_fit = 8.0;
 constexpr std::int64_t fewest_lags = 8, most_lags = 2000;
 constexpr std::int64_t samples_per_friction = 100;
 constexpr std::size_t lags_in_fit = 100;
@@ -25,6 +27,18 @@ std::vector<bool> which_are_longitudinal(const Waves<D>& waves) {
   for (std::size_t m = 0; m < waves.modes_per_wave(); ++m)
     longitudinal.push_back(waves.modes()[m].component == waves.modes()[m].axis);
   return longitudinal;
+}
+
+// Mean over the particles and directions.
+template <int D>
+double friction_of_a_particle(const Particles<D>& particles, const PairNetwork<D>& network) {
+  double sum = 0.0;
+  for (std::size_t edge = 0; edge < index(network.size()); ++edge)
+    if (network.counts(edge))
+      sum +=
+          network.zeta_par[edge] + (network.transverse ? (D - 1) * network.zeta_perp[edge] : 0.0);
+  particles.ranks().sum(std::span(&sum, 1));
+  return 2.0 * sum / (D * static_cast<double>(particles.size()));
 }
 
 // Every so many-th value from the first on, for fits: neighbours among many lags say the same.
@@ -97,11 +111,13 @@ double CurrentModes<D>::eta_inf(std::size_t wave) const {
 
 // By the friction of the first sample where the case does not say.
 template <int D>
-void CurrentModes<D>::choose_lags() {
+void CurrentModes<D>::choose_lags(double particle_time) {
   std::vector<std::int64_t> lags;
   for (std::size_t wave = 0; wave < waves_.count(); ++wave) {
     const double rate = eta_inf(wave) * named_.k[wave] * named_.k[wave] / rho();
-    const double window = modes_.window > 0.0 ? modes_.window : decays_in_window / rate;
+    const double window = modes_.window > 0.0
+                              ? modes_.window
+                              : decays_in_window / rate + memories_in_window * particle_time;
     lags.push_back(static_cast<std::int64_t>(std::round(std::clamp(
         window / interval(), static_cast<double>(fewest_lags), static_cast<double>(most_lags)))));
   }
@@ -117,7 +133,8 @@ void CurrentModes<D>::measure(const Clock&, const Particles<D>& particles,
   // Configurations change little between two of these.
   if (samples_++ % samples_per_friction == 0)
     friction_.add(waves_.friction(particles, record.start.network));
-  if (correlator_.waves() == 0) choose_lags();
+  if (correlator_.waves() == 0)
+    choose_lags(scene_.settings().mass / friction_of_a_particle(particles, record.start.network));
   current_ = waves_.sums(particles, record.start.position,
                          modes_.half_way ? record.v_mid : record.v_start);
   correlator_.add(current_);
@@ -144,10 +161,10 @@ std::vector<std::size_t> CurrentModes<D>::joins(const std::vector<double>& means
     const std::size_t lags = correlator_.lags(wave);
     const double rate = fit_exponential(
         std::span(means).subspan(correlator_.first_column(wave, false), lags + 1), interval());
-    const double join = decays_before_fit / (rate * interval());
-    joins.push_back(join < static_cast<double>(lags)
-                        ? std::max<std::size_t>(1, static_cast<std::size_t>(join))
-                        : lags);
+    const double join =
+        std::min(0.5 * static_cast<double>(lags), most_decays_before_fit / (rate * interval()));
+    joins.push_back(std::isnan(join) ? lags
+                                     : std::max<std::size_t>(1, static_cast<std::size_t>(join)));
   }
   return joins;
 }
@@ -257,7 +274,7 @@ void CurrentModes<D>::add_notes(Results& results, const std::vector<Scalar>& tau
     if (!(tau.mean >= 3.0 * dt_ && tau.mean >= 2.0 * tau.standard_error))
       without_tau.push_back(tau.name);
     if (eta < eta_inf(wave)) softer.push_back(fmt::format("{:.4g}", named_.k[wave]));
-    if (decays * interval() * static_cast<double>(correlator_.lags(wave)) < decays_before_fit)
+    if (decays * interval() * static_cast<double>(correlator_.lags(wave)) < fewest_decays)
       early.push_back(fmt::format("{:.4g}", named_.k[wave]));
     if (!(decays * dt_ < 1.0)) fast.push_back(fmt::format("{:.4g}", named_.k[wave]));
   }
@@ -383,7 +400,7 @@ void CurrentModes<D>::load(const StateReader& in) {
   samples_ = in.read_integers("sampled").at(0);
   current_ = in.read_doubles("current");
   friction_.load(in, "friction");
-  if (samples_ > 0) choose_lags();
+  if (samples_ > 0) choose_lags(0.0);  // for the scale: the lags are those of the state
   correlator_.load(in, waves_.count());
 }
 

@@ -42,7 +42,7 @@ namespace odpd {
 struct CurrentModeSettings {
   std::vector<std::int64_t> numbers;  ///< waves in the edge of the box, ascending
   std::vector<int> axes;              ///< directions of k; the box has the same edge along all
-  double window = 0.0;                ///< lags (time); 0: five decays by eta_inf(k)
+  double window = 0.0;                ///< lags (time); 0: 5 decays by eta_inf(k) and 10 m/friction
   std::int64_t extrapolate = 4;       ///< smallest wave numbers that eta_0 + a k^2 is fitted to
   bool half_way = false;              ///< v is v_mid of the record
 };
@@ -72,7 +72,8 @@ class CurrentModes : public Observer<D> {
   double rho() const;
   double eta_inf(std::size_t wave) const;
   bool has_bodies() const { return !scene_.particles().bodies.empty(); }
-  void choose_lags();
+  /// particle_time: m/friction of a particle.
+  void choose_lags(double particle_time);
   /// Of J at full steps over its exact value, where c has it; else c(0).
   double mean_square(std::span<const double> c) const;
   /// joins: where fits take over from c(t), by wave.
