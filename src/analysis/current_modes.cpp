@@ -8,6 +8,7 @@
 
 #include "odpd/analysis/current_decay.h"
 #include "odpd/analysis/mode_keys.h"
+#include "odpd/core/error.h"
 #include "odpd/core/index.h"
 
 namespace odpd {
@@ -69,8 +70,9 @@ template <int D>
 std::unique_ptr<Observer<D>> CurrentModes<D>::make(const ObserverEntry<D>& entry) {
   const Config& config = entry.config;
   if (entry.in_time) refuse_modes_unless_at_rest(entry);
+  const bool control = config.boolean("control", false);
   for (const char* key : {"control", "control_every", "control_tolerance"})
-    if (config.has(key))
+    if (key == std::string("control") ? control : config.has(key))
       config.fail(key,
                   "is for particles without mass, where a step's noise is all that it moves them "
                   "by. With mass the noise of a step lives on in their momentum: leave it out");
@@ -82,7 +84,7 @@ std::unique_ptr<Observer<D>> CurrentModes<D>::make(const ObserverEntry<D>& entry
   modes.axes = read_wave_axes(entry);
   modes.numbers = read_wave_numbers(config);
   modes.half_way = entry.half_way_velocity;
-  modes.extrapolate = config.positive_integer("extrapolate", modes.extrapolate);
+  modes.extrapolate = read_extrapolation(config, modes.numbers.size());
   ObserverSettings settings = entry.settings();
   if (config.has("window")) {
     modes.window = config.positive("window");
@@ -187,6 +189,7 @@ auto CurrentModes<D>::estimates(const std::vector<double>& means,
     // Of the area under c/c(0): in steps, by the exponential of this area where some were left out.
     const auto of_area = [&](double area) {
       if (this->settings().every > 1) {
+        // Below half an interval, which noise may make of a fast decay, this is not a number.
         const double intervals = area / interval();
         const double q = std::pow((2.0 * intervals - 1.0) / (2.0 * intervals + 1.0), 1.0 / every);
         area = 0.5 * dt_ * (1.0 + q) / (1.0 - q);
@@ -266,17 +269,22 @@ void CurrentModes<D>::add_results(Results& results) const {
 
 template <int D>
 void CurrentModes<D>::add_notes(Results& results, const std::vector<Scalar>& taus) const {
-  std::vector<std::string> without_tau, softer, early, fast;
+  std::vector<std::string> without_tau, softer, early, coarse, fast;
   for (std::size_t wave = 0; wave < waves_.count(); ++wave) {
     const Scalar& tau = taus[wave];
-    const double eta = results.find(named_.scalar("eta", wave))->mean;
+    const Scalar& of_wave = *results.find(named_.scalar("eta", wave));
+    const double eta = of_wave.mean;
     const double decays = eta * named_.k[wave] * named_.k[wave] / rho();
     if (!(tau.mean >= 3.0 * dt_ && tau.mean >= 2.0 * tau.standard_error))
       without_tau.push_back(tau.name);
-    if (eta < eta_inf(wave)) softer.push_back(fmt::format("{:.4g}", named_.k[wave]));
+    if (eta + 2.0 * of_wave.standard_error < eta_inf(wave))
+      softer.push_back(fmt::format("{:.4g}", named_.k[wave]));
     if (decays * interval() * static_cast<double>(correlator_.lags(wave)) < fewest_decays)
       early.push_back(fmt::format("{:.4g}", named_.k[wave]));
-    if (!(decays * dt_ < 1.0)) fast.push_back(fmt::format("{:.4g}", named_.k[wave]));
+    if (this->settings().every > 1 && !(decays * interval() < 1.0))
+      coarse.push_back(fmt::format("{:.4g}", named_.k[wave]));
+    else if (!(decays * dt_ < 1.0))
+      fast.push_back(fmt::format("{:.4g}", named_.k[wave]));
   }
   const std::string& name = this->settings().name;
   const auto note = [&](const std::vector<std::string>& of, const char* what) {
@@ -284,12 +292,12 @@ void CurrentModes<D>::add_notes(Results& results, const std::vector<Scalar>& tau
       results.notes.push_back(
           fmt::format("{}: {}", name, fmt::format(fmt::runtime(what), fmt::join(of, ", "))));
   };
-  note(without_tau,
-       "no relaxation time above 3 dt and two standard errors is in {}, nor in the memory by it");
+  note(without_tau, "no relaxation time above 3 dt and two standard errors is in {}");
   note(softer,
        "eta(k) is below eta_inf(k) at k = {}: particles give way after a time m/friction, and "
        "G' is negative, no storage");
   note(early, "at k = {} the window ends before two decays: take a longer one");
+  note(coarse, "at k = {} currents decay between two samples: take a smaller every");
   note(fast,
        "at k = {} currents decay within a step, and fits mean nothing: take a smaller dt, or "
        "mass 0");
@@ -399,6 +407,10 @@ template <int D>
 void CurrentModes<D>::load(const StateReader& in) {
   samples_ = in.read_integers("sampled").at(0);
   current_ = in.read_doubles("current");
+  if (!current_.empty() && current_.size() != waves_.modes().size())
+    throw IoError(
+        "the checkpoint's currents do not fit the case's wave numbers: it is damaged or of another "
+        "case");
   friction_.load(in, "friction");
   if (samples_ > 0) choose_lags(0.0);  // for the scale: the lags are those of the state
   correlator_.load(in, waves_.count());

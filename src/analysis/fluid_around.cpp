@@ -49,8 +49,8 @@ FluidAround<D>::FluidAround(FluidAroundSettings settings, std::vector<std::strin
   for (double& s : share_) s = 1.0 / s;
 }
 
-// Cells as wide as g(q) reaches say which particles may be near a centre. Under shear these are cells along the edges of the sheared
-// cell, in which a distance along the flow may be longer.
+// Cells as wide as g(q) reaches say which particles may be near a centre. Under shear these are cells along the edges of the
+// sheared cell, in which a distance along the flow may be longer.
 template <int D>
 void FluidAround<D>::add(const Stage<D>& stage, std::span<const Vec<D>> centres,
                          std::span<const std::int32_t> fluid, double per_particle,

@@ -6,6 +6,12 @@
 
 namespace odpd {
 
+namespace {
+
+constexpr std::int64_t most_waves = 1000;
+
+}  // namespace
+
 template <int D>
 std::vector<int> read_wave_axes(const ObserverEntry<D>& entry) {
   const Vec<D>& size = entry.scene.box().size;
@@ -33,15 +39,33 @@ std::vector<int> read_wave_axes(const ObserverEntry<D>& entry) {
   return axes;
 }
 
+std::int64_t read_extrapolation(const Config& config, std::size_t waves) {
+  const auto most = static_cast<std::int64_t>(waves);
+  if (!config.has("extrapolate")) return std::min<std::int64_t>(4, most);
+  const std::int64_t chosen = config.integer("extrapolate");
+  if (chosen < 2 || chosen > most)
+    config.fail(
+        "extrapolate",
+        fmt::format("is {}: eta_0 + a k^2 is fitted to the smallest wave numbers, from 2 to "
+                    "all {} that there are",
+                    chosen, most));
+  return chosen;
+}
+
 std::vector<std::int64_t> read_wave_numbers(const Config& config) {
   std::vector<std::int64_t> numbers;
   if (!config.has("numbers")) {
     const std::int64_t count = config.positive_integer("count", 8);
+    if (count > most_waves)
+      config.fail("count", fmt::format("is {}: at most {}", count, most_waves));
     for (std::int64_t number = 1; number <= count; ++number) numbers.push_back(number);
     return numbers;
   }
   if (config.has("count")) config.fail("count", "give either count or numbers");
   for (const double number : config.numbers("numbers")) {
+    if (number > most_waves)
+      config.fail("numbers",
+                  fmt::format("has {}: waves in an edge are at most {}", number, most_waves));
     const auto whole = static_cast<std::int64_t>(number);
     if (static_cast<double>(whole) != number || whole <= (numbers.empty() ? 0 : numbers.back()))
       config.fail("numbers", "must be whole, positive and ascending: waves in the edge of the box");

@@ -1,6 +1,7 @@
 #include "odpd/analysis/modes.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -67,7 +68,8 @@ std::unique_ptr<Observer<D>> Modes<D>::make(const ObserverEntry<D>& entry) {
   modes.window = config.positive("window", modes.window);
   modes.fit_from = config.non_negative("fit_from", 0.4 * modes.window);
   if (modes.fit_from >= modes.window) config.fail("fit_from", "must be less than window");
-  modes.extrapolate = config.positive_integer("extrapolate", modes.extrapolate);
+  require_two_steps(config, modes.window, entry.clock.dt);
+  modes.extrapolate = read_extrapolation(config, modes.numbers.size());
   modes.control = read_control(config, modes.window, entry.clock.dt);
   return std::make_unique<Modes<D>>(std::move(settings), modes, entry.scene, entry.clock.dt);
 }
@@ -130,6 +132,7 @@ Scalar Modes<D>::viscosity(const std::string& what, std::size_t wave,
 
 template <int D>
 void Modes<D>::add_results(Results& results) const {
+  std::vector<std::string> without_tau;
   for (std::size_t wave = 0; wave < waves_.count(); ++wave) {
     results.scalars.push_back(viscosity("eta", wave, growth_.chi(wave)));
     if (growth_.controlled()) {
@@ -138,6 +141,7 @@ void Modes<D>::add_results(Results& results) const {
       const ModeGrowth::Estimate tau = growth_.memory_time(wave);
       results.scalars.push_back(
           {this->named(fmt::format("tau.{}", wave + 1)), tau.mean, tau.error});
+      if (!(tau.mean >= 2.0 * tau.error)) without_tau.push_back(results.scalars.back().name);
     }
     Scalar affine{this->named(fmt::format("eta_inf.{}", wave + 1))};
     if (friction_.samples() > 0) {
@@ -157,6 +161,12 @@ void Modes<D>::add_results(Results& results) const {
     });
   });
   if (growth_.samples() == 0) return;
+  if (!without_tau.empty())
+    results.notes.push_back(fmt::format(
+        "{}: no memory time above two standard errors is in {}, nor in the moduli by it",
+        this->settings().name, fmt::join(without_tau, ", ")));
+  if (growth_.controlled() && !scene_.bonds().empty())
+    results.notes.push_back(control_with_bonds(this->settings().name));
   std::vector<std::string> columns{"eta", "eta_inf"};
   if (growth_.controlled()) columns.insert(columns.end(), {"plain", "frozen"});
   const std::string& name = this->settings().name;
@@ -205,11 +215,13 @@ Table Modes<D>::lag_table() const {
   return table;
 }
 
-// eta* of a Jeffreys fluid.
+// eta* of a Jeffreys fluid; undefined where errors hide its memory.
 template <int D>
 std::complex<double> Modes<D>::jeffreys(std::size_t wave, double omega) const {
   const double chi = growth_.chi(wave).mean, chi_0 = growth_.frozen(wave).mean;
-  const double turn = omega * growth_.memory_time(wave).mean;
+  const double tau = growth_.memory_time(wave).mean, turn = omega * tau;
+  const double undefined = std::numeric_limits<double>::quiet_NaN();
+  if (!(tau > 0.0)) return {undefined, undefined};
   return viscosity(wave, 1.0) / (chi_0 - (chi_0 - chi) / std::complex(1.0, turn));
 }
 

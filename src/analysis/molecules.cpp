@@ -71,6 +71,10 @@ std::unique_ptr<Observer<D>> MoleculeStatistics<D>::make(const ObserverEntry<D>&
   ObserverSettings settings = entry.settings(msd_interval(entry.clock));
   if (entry.scene.settings().molecules.empty())
     entry.config.fail("kind", "the scene has no [[molecule]]");
+  const auto beads = entry.scene.settings().molecule_beads();
+  for (const char* key : {"r_max", "bin", "empty"})
+    if (entry.config.has(key) && entry.scene.particles().free_count() <= beads)
+      entry.config.fail(key, "is of the solvent around molecules, and this melt has none");
   MoleculesSettings m{.msd = read_msd(entry), .around = read_fluid_around(entry)};
   return std::make_unique<MoleculeStatistics<D>>(std::move(settings), std::move(m), entry.scene,
                                                  entry.clock.dt, entry.in_time);

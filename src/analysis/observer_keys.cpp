@@ -106,6 +106,19 @@ ControlKeys read_control(const Config& config, double window, double dt) {
   return control;
 }
 
+std::string control_with_bonds(const std::string& observer) {
+  return observer +
+         ": bonds that are taken implicitly and relax within a step (dt H near the friction or "
+         "above) "
+         "are missing in the memory, which makes eta too low: compare with plain, or with half the "
+         "dt";
+}
+
+void require_two_steps(const Config& config, double window, double dt) {
+  if (config.has("window") && window < 2.0 * dt * (1.0 - 1e-9))
+    config.fail("window", fmt::format("is {}: it must hold two steps of {} at least", window, dt));
+}
+
 #define ODPD_INSTANTIATE(D)                                                             \
   template int read_direction<D>(const Config&, const std::string&, int);               \
   template int read_axis<D>(const ObserverEntry<D>&);                                   \

@@ -210,8 +210,10 @@ std::unique_ptr<Observer<D>> Viscosity<D>::make(const ObserverEntry<D>& entry) {
     if (v.fit_from >= v.window) config.fail("fit_from", "must be less than window");
     if (settings.every != 1)
       config.fail("every", "must be 1: the stress is integrated over every step");
+    require_two_steps(config, v.window, entry.clock.dt);
     v.control = read_control(config, v.window, entry.clock.dt);
-    if (v.control.every > 0 && (entry.scene.settings().mass > 0.0 || !entry.two_stages))
+    if (v.control.every > 0 &&
+        (entry.scene.settings().mass > 0.0 || (entry.in_time && !entry.two_stages)))
       config.fail("control",
                   "knows what the noise does to particles without mass, in schemes of two stages: "
                   "set fluid.mass = 0 and the "
@@ -240,7 +242,9 @@ template <int D>
 Table Viscosity<D>::growth_table() const {
   Table table;
   table.comment = {
-      "growth of the integrated stress, <(dG)^2>/(2 V kT); its slope is the viscosity"};
+      "growth of the integrated stress, <(dG)^2>/(2 V kT), with control less what its noise is "
+      "known "
+      "to make beyond its mean; its slope is the viscosity"};
   table.columns = {"lag", "growth", "growth_error"};
   for (std::size_t lag = 1; lag <= growth_->lags(); ++lag) {
     const double t = growth_->lag_time(lag);
@@ -270,6 +274,7 @@ std::vector<Scalar> Viscosity<D>::routes(Results& results) const {
     if (growth_->controlled()) {
       results.scalars.push_back(helfand("plain", growth_->plain(0)));
       results.scalars.push_back(helfand("frozen", growth_->frozen(0)));
+      if (!scene_.bonds().empty()) results.notes.push_back(control_with_bonds(name));
     }
     return {helfand("helfand", growth_->chi(0))};
   }

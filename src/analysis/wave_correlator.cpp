@@ -73,8 +73,12 @@ void WaveCorrelator::load(const StateReader& in, std::size_t waves) {
   const std::vector<std::int64_t> samples = in.read_integers("samples");
   const std::vector<double> all = in.read_doubles("history");
   std::size_t places = 0;
-  for (const std::int64_t last : lags_) places += last < 0 ? 0 : static_cast<std::size_t>(last + 1);
-  if ((!lags_.empty() && lags_.size() != waves) || samples.size() != 1 ||
+  bool sound = true;
+  for (const std::int64_t last : lags_) {
+    sound = sound && last >= 0;
+    places += last < 0 ? 0 : static_cast<std::size_t>(last + 1);
+  }
+  if (!sound || (!lags_.empty() && lags_.size() != waves) || samples.size() != 1 ||
       all.size() != places * longitudinal_.size())
     throw IoError(
         "the checkpoint's currents do not fit the case's wave numbers: it is damaged or of another "

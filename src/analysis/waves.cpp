@@ -22,8 +22,8 @@ struct Turned {
   Lanes cosine, sine;
 };
 
-// cos and sin of 2 pi turns, to rounding: Taylor's series for a quarter of the angle, of -pi to pi, which is then doubled twice. The
-// library's take three times as long, one by one.
+// cos and sin of 2 pi turns, to rounding: Taylor's series for a quarter of the angle, of -pi to pi, which is then doubled
+// twice. The library's take three times as long, one by one.
 Turned turned(const Lanes& turns) {
   constexpr double to_whole = 0x1.8p52;  // added and taken off again: rounds
   Turned t{};

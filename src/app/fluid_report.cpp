@@ -112,8 +112,8 @@ struct FlowScale {
   double speed = 0.0, length = 0.0;
 };
 
-// Half the difference of two walls' speeds and their distance; or the largest speed that the force gives at this viscosity, and the
-// width of its stream; zero for a fluid at rest.
+// Half the difference of two walls' speeds and their distance; or the largest speed that the force gives at this viscosity,
+// and the width of its stream; zero for a fluid at rest.
 template <int D>
 FlowScale flow_scale(const Scene<D>& scene, double eta) {
   using Kind = ViscosityScene::Kind;
@@ -141,8 +141,8 @@ FlowScale flow_scale(const Scene<D>& scene, double eta) {
           length};
 }
 
-// Re, M, Sc (Phan-Thien et al. 2016, eq. 1), Pe = U L/D, and eta U/(L n dp/dn), which takes the place of the Mach number at mass 0;
-// with what the run measured, and the equation of state of kinetic theory. Empty without a measured viscosity.
+// Re, M, Sc (Phan-Thien et al. 2016, eq. 1), Pe = U L/D, and eta U/(L n dp/dn), which takes the place of the Mach number at
+// mass 0; with what the run measured, and the equation of state of kinetic theory. Empty without a measured viscosity.
 template <int D>
 Named group_values(const Scene<D>& scene, const KineticTheory& k, const Results& results) {
   const Scalar* eta = measured_viscosity(results);

@@ -191,8 +191,16 @@ const StepRecord<D>& Simulation<D>::step() {
   }
   if (clock_.measuring()) alarm_crossings_ += record.alarm_crossings;
   const PhaseTimer timer(dynamics_.phases(), Phase::measure);
-  for (auto& observer : observers_)
-    if (observer->is_due(clock_)) observer->measure(clock_, scene_.particles(), record);
+  for (auto& observer : observers_) {
+    if (!observer->is_due(clock_)) continue;
+    try {
+      observer->measure(clock_, scene_.particles(), record);
+    } catch (const SolverError& error) {
+      throw SolverError(fmt::format("step {}: in a solve for the observer '{}': {}", record.step,
+                                    observer->settings().name, error.what()),
+                        error.cause());
+    }
+  }
   return record;
 }
 

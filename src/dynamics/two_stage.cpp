@@ -9,7 +9,7 @@ namespace {
 // zeta/M about which the momentum goes over to the first stage (docs/accuracy.md).
 constexpr double crossover = 20.0;
 
-// M + zeta, zeta the mean friction of the particles that move.
+// M + zeta, the mean diagonal of the matrix of the particles that move.
 template <int D>
 double mean_diagonal(const Resistance<D>& matrix) {
   std::vector<double> trace;

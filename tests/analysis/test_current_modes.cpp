@@ -169,8 +169,8 @@ TEST(CurrentModes, ModesWithoutMemoryHaveTheirRate) {
   }
 }
 
-// Currents of two rates: an area of sum V (1 + q)/(1 - q) dt/2, where full steps have a mean square of sum V (1 + q)/2 = 1. That of an
-// exponential of the same area is a seventh more.
+// Currents of two rates: an area of sum V (1 + q)/(1 - q) dt/2, where full steps have a mean square of sum V (1 + q)/2 = 1.
+// That of an exponential of the same area is a seventh more.
 TEST(CurrentModes, FullStepsSetTheNormOfHalfWayVelocities) {
   OrnsteinUhlenbeck modes;
   const auto results = modes.run({{0.8, 1.0 / 1.45}, {0.1, 1.0 / 1.45}}, 30.0, true, true);

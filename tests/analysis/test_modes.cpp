@@ -219,8 +219,8 @@ TYPED_TEST(ModesTest, TakeTheMeanOfTheStages) {
 }
 
 // Particles that move by noise alone, in place: nothing is left for the memory, and eta is that of <phi.R^-1 phi> over both
-// phases, which a poor solve finds too, where phi.w alone (`rough`) is far off. Every pair has friction across as well, so that nothing
-// turns freely.
+// phases, which a poor solve finds too, where phi.w alone (`rough`) is far off. Every pair has friction across as well, so
+// that nothing turns freely.
 TYPED_TEST(ModesTest, ControlTakesOutWhatTheNoiseMakes) {
   constexpr int D = TypeParam::D;
   for (const int every : {1, 3}) {

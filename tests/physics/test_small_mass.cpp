@@ -57,8 +57,8 @@ TEST(EveryMass, OneSchemeHasTheRightEnergyAndTemperature) {
   }
 }
 
-// zeta dt/2m is 75. The standard error is 0.5 to 0.7 %. With momenta by the mean over the stages it is 1.051 and 1.036 (trapezoidal,
-// midpoint), by the first stage alone, without what the change of the forces does, 1.051 and 1.055.
+// zeta dt/2m is 75. The standard error is 0.5 to 0.7 %. With momenta by the mean over the stages it is 1.051 and 1.036
+// (trapezoidal, midpoint), by the first stage alone, without what the change of the forces does, 1.051 and 1.055.
 TEST(SmallMass, VelocitiesHaveTheirVarianceAtLongSteps) {
   for (const char* scheme : {"trapezoidal", "midpoint"}) {
     const Results results =

@@ -1,6 +1,7 @@
-// The stress of a massless fluid at equilibrium (cases/04_equilibrium): friction and noise add nothing to the pressure as dt -> 0,
-// if each stage has its arm and the noise that of the step's start. Two obvious mistakes are far off. And its viscosity by two
-// routes that share nothing: the growth of the integrated stress at rest, the amplitude of a sinusoidal flow.
+// The stress of a massless fluid at equilibrium (cases/04_equilibrium): friction and noise add nothing to the pressure as dt
+// -> 0, if each stage has its arm and the noise that of the step's start. Two obvious mistakes are far off. And its
+// viscosity by two routes that share nothing: the growth of the integrated stress at rest, the amplitude of a sinusoidal
+// flow.
 #include <gtest/gtest.h>
 
 #include "odpd/analysis/block_average.h"
@@ -106,8 +107,8 @@ Results with_viscosity(const std::vector<std::string>& overrides, const std::str
   return simulation.results();
 }
 
-// Long runs give 2.66(1), of which frozen configurations have 2.57, and 2.59(4) by a sine of L = 10 (docs/rheology.md). Affine motion
-// would give 3.9; the repulsion alone much less.
+// Long runs give 2.66(1), of which frozen configurations have 2.57, and 2.59(4) by a sine of L = 10 (docs/rheology.md).
+// Affine motion would give 3.9; the repulsion alone much less.
 TEST(ViscosityAtRest, HelfandAgreesWithASinusoidalForce) {
   const Results rest = with_viscosity({"run.duration=12"}, ", control=true");
   const Scalar& eta = *rest.find("viscosity");
@@ -124,8 +125,9 @@ TEST(ViscosityAtRest, HelfandAgreesWithASinusoidalForce) {
   EXPECT_NEAR(sine.mean, 2.6, 0.5);
 }
 
-// In steps so short that nothing moves all there is comes from the noise: with it taken out nothing fluctuates, eta is that of frozen
-// configurations, and the spread of all the noise agrees. Of single particles, and of bodies, on whose centres forces count.
+// In steps so short that nothing moves all there is comes from the noise: with it taken out nothing fluctuates, eta is that
+// of frozen configurations, and the spread of all the noise agrees. Of single particles, and of bodies, on whose centres
+// forces count.
 template <int D>
 void expect_only_noise(const std::vector<std::string>& scene) {
   std::vector<std::string> all = scene;

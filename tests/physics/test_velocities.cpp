@@ -76,8 +76,8 @@ TEST(VelocityStatistics, HaveTheVarianceOfEquipartition) {
   }
 }
 
-// Images slide by 6 per time: a body across the face, or a bead beyond it, that kept the velocity of another image would have 15 and more
-// times this variance.
+// Images slide by 6 per time: a body across the face, or a bead beyond it, that kept the velocity of another image would
+// have 15 and more times this variance.
 TEST(VelocityStatistics, AreThoseRelativeToTheFlow) {
   const Results results = velocities_of(
       "directions = [\"x\"]\n[shear]\nrate = 1.0\n[integrator]\ndt = 0.01\n[run]\nequilibrate = "

@@ -211,7 +211,8 @@ count = )" + std::to_string(edge * edge * edge));
   }
 }
 
-// Beads at one distance from the centre and, of a shape given by its spacing, each with as many neighbours there as the shape has.
+// Beads at one distance from the centre and, of a shape given by its spacing, each with as many neighbours there as the
+// shape has.
 template <int D>
 void expect_corners(const std::string& shape, std::int64_t beads, std::int64_t neighbours,
                     double radius_of_edge) {

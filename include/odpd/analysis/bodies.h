@@ -9,8 +9,8 @@
 //                     the flow)
 //   g(q)              density of the fluid at distance q from the centre, and the exclusion radius (analysis/fluid_around.h)
 //
-// and the mean velocity of the fluid particles, likewise. The orientation is followed by adding up the rotation from sample to sample,
-// so it must turn by less than half a turn between two.
+// and the mean velocity of the fluid particles, likewise. The orientation is followed by adding up the rotation from sample
+// to sample, so it must turn by less than half a turn between two.
 #include "odpd/analysis/displacements.h"
 #include "odpd/analysis/fluid_around.h"
 #include "odpd/analysis/msd.h"

@@ -5,9 +5,9 @@
 //   Maxwell       c(t)/c(0) = exp(-t/2tau) [cosh(W t/2tau) + sinh(W t/2tau)/W],   W = sqrt(1 - 4 tau lam)       (Hess 2002)
 //   area          1/lam = int_0^inf c/c(0) dt
 //
-// Maxwell's is that of the memory G(t) = (eta/tau) exp(-t/tau), with a W that may be imaginary. To first order in lam tau it is
-// (1 + lam tau) exp(-lam t) once the memory is over. A tau below 0 is taken to say so alone: friction is larger at first, and the slow decay
-// begins below 1. Fits are unweighted least squares.
+// Maxwell's is that of the memory G(t) = (eta/tau) exp(-t/tau), with a W that may be imaginary. To first order in lam tau it
+// is (1 + lam tau) exp(-lam t) once the memory is over. A tau below 0 is taken to say so alone: friction is larger at first,
+// and the slow decay begins below 1. Fits are unweighted least squares.
 #include <array>
 #include <complex>
 #include <span>

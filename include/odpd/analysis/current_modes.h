@@ -5,28 +5,29 @@
 //
 //   rho dc/dt = -k^2 int_0^t eta(k; t - t') c(t') dt',     eta(k) = rho/(k^2 int_0^inf c dt),     rho = N m/V
 //
-// with phi a wave of analysis/waves.h, c the mean over all modes of a wave number (transverse current autocorrelation, TCAF: Palmer
-// 1994; per particle as in Nguyen 2021, eq. 4.8). A force h phi drives a flow of amplitude n h/(eta(k) k^2) in the end: the area is
-// the viscosity at zero frequency. analysis/current_decay.h has the fits of an exponential and of Maxwell's fluid, of c(t)/c(0).
+// with phi a wave of analysis/waves.h, c the mean over all modes of a wave number (transverse current autocorrelation, TCAF:
+// Palmer 1994; per particle as in Nguyen 2021, eq. 4.8). A force h phi drives a flow of amplitude n h/(eta(k) k^2) in the
+// end: the area is the viscosity at zero frequency. analysis/current_decay.h has the fits of an exponential and of Maxwell's
+// fluid, of c(t)/c(0).
 //
-// v is the velocity that the scheme steps from. For velocity-verlet that is the half-way one: the mean of two of them, which it gives
-// for a full step, decays from its value at t = 0 as if there were a memory of tau = dt/2.
+// v is the velocity that the scheme steps from. For velocity-verlet that is the half-way one: the mean of two of them, which
+// it gives for a full step, decays from its value at t = 0 as if there were a memory of tau = dt/2.
 //
-// Steps. The area is a sum over steps by the trapezoidal rule. For a mode that falls by q = 1 - lam dt (half-way velocities) or
-// (2 - lam dt)/(2 + lam dt) (trapezoidal) in each, and has kT/m at full steps, it is 1/lam for any lam dt: that by which the scheme
-// answers a steady force. (Half-way velocities have more than kT/m then, c(0) = 1/(1 - lam dt/2).) With `every` above 1 it is that of
-// the steps in between, as an exponential has it.
+// Steps. The area is a sum over steps by the trapezoidal rule. For a mode that falls by q = 1 - lam dt (half-way velocities)
+// or (2 - lam dt)/(2 + lam dt) (trapezoidal) in each, and has kT/m at full steps, it is 1/lam for any lam dt: that by which
+// the scheme answers a steady force. (Half-way velocities have more than kT/m then, c(0) = 1/(1 - lam dt/2).) With `every`
+// above 1 it is that of the steps in between, as an exponential has it.
 //
-// Noise. The mean square of J at full steps is known, but what a run has in its place is not: dividing c by it takes a third of the error
-// out, and what kT a scheme is off. With rigid bodies it is less than that of k^2 kT/m, as they do not follow a wave, and areas are
-// those of C/(k^2 kT/m), as they are where a half-way velocity is seen in some steps only.
+// Noise. The mean square of J at full steps is known, but what a run has in its place is not: dividing c by it takes a third
+// of the error out, and what kT a scheme is off. With rigid bodies it is less than that of k^2 kT/m, as they do not follow a
+// wave, and areas are those of C/(k^2 kT/m), as they are where a half-way velocity is seen in some steps only.
 //
 // Memory. White noise makes an instantaneous friction eta_inf(k) = 2 <phi R phi>/(V k^2). With one time tau_m for the rest,
 //
 //   eta*(omega) = eta_inf + (eta - eta_inf)/(1 + i omega tau_m),     (eta - eta_inf) tau_m = eta tau
 //
-// with tau of Maxwell's fit, as both have the moment int t G(t) dt. Particles give way to one another after m/zeta, so that eta < eta_inf
-// at masses near 1 and G' = -omega Im eta* is negative: such a fluid stores nothing.
+// with tau of Maxwell's fit, as both have the moment int t G(t) dt. Particles give way to one another after m/zeta, so that
+// eta < eta_inf at masses near 1 and G' = -omega Im eta* is negative: such a fluid stores nothing.
 #include <memory>
 #include <span>
 #include <string>

@@ -4,8 +4,8 @@
 //   g(q)                density of the fluid at distance q from a centre, relative to its mean
 //   exclusion radius    largest r with   int_0^r g(q) S_d q^(d-1) dq <= empty r^d S_d/d,
 //
-// the radius of the largest ball with less than `empty` of the mean density (S_d: surface of the unit sphere). The whole ball counts, as
-// a single visit trips the density of a thin shell near the centre.
+// the radius of the largest ball with less than `empty` of the mean density (S_d: surface of the unit sphere). The whole
+// ball counts, as a single visit trips the density of a thin shell near the centre.
 #include <cstdint>
 #include <span>
 #include <string>

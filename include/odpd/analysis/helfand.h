@@ -3,18 +3,19 @@
 //
 //   G(t) = V int S_ab dt,     eta = d/dt <(G(t + s) - G(s))^2> / (2 V kT)
 //
-// S dt is summed over all steps, as a step's stress is the mean of its stages and its noise acts throughout the step. At mass 0 the
-// noise alone gives the viscosity of particles that follow the mean flow; what answers it in the same step, and later, corrects
-// that. (The integral of the correlation of S without the noise has the wrong sign for the friction.) Components: S_ab of all
-// pairs a < b, symmetrised, and (S_aa - S_bb)/2, which isotropy makes equivalent.
+// S dt is summed over all steps, as a step's stress is the mean of its stages and its noise acts throughout the step. At
+// mass 0 the noise alone gives the viscosity of particles that follow the mean flow; what answers it in the same step, and
+// later, corrects that. (The integral of the correlation of S without the noise has the wrong sign for the friction.)
+// Components: S_ab of all pairs a < b, symmetrised, and (S_aa - S_bb)/2, which isotropy makes equivalent.
 //
-// Without mass what the noise makes of G is known. In a flow of rate 1 with the symmetric gradient E of a component, particles that follow it
-// slip by A = E r at an edge of vector r, and give way by velocities w:
+// Without mass what the noise makes of G is known. In a flow of rate 1 with the symmetric gradient E of a component,
+// particles that follow it slip by A = E r at an edge of vector r, and give way by velocities w:
 //
 //   R w = J^T Z A,     G' = -(A - J w) . (f_C + f_B),     V eta_0 = <(A - J w) . Z (A - J w)>
 //
-// with J and Z of pairs/network.h, f_C and f_B the conservative and the random force of each edge. The part of f_B has the variance
-// 2 kT V eta_0 of frozen configurations, and is uncorrelated with how it moves particles, J^T f_B, since J^T Z (A - J w) = 0. So
+// with J and Z of pairs/network.h, f_C and f_B the conservative and the random force of each edge. The part of f_B has the
+// variance 2 kT V eta_0 of frozen configurations, and is uncorrelated with how it moves particles, J^T f_B, since J^T Z (A -
+// J w) = 0. So
 //
 //   eta = eta_0 + lim <(int b dt)^2>/(2 V kT t),     b dt = dG + dt (A - J w) . f_B
 //

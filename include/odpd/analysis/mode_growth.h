@@ -1,22 +1,25 @@
 #pragma once
-// The response chi of modes from how their displacements Phi grow at equilibrium, one chi for each wave number from all its modes:
+// The response chi of modes from how their displacements Phi grow at equilibrium, one chi for each wave number from all its
+// modes:
 //
 //   <Phi(t)^2>/(2 kT) -> chi t   for t beyond the memory
 //
-// (integrated fluctuation-dissipation: h Phi is the work of forces h phi, to which the particles answer by d<Phi>/dt = h chi). The
-// random force makes most of Phi, and what it makes is known where one solves for w = R^-1 phi at the step's start (`control`):
+// (integrated fluctuation-dissipation: h Phi is the work of forces h phi, to which the particles answer by d<Phi>/dt = h
+// chi). The random force makes most of Phi, and what it makes is known where one solves for w = R^-1 phi at the step's start
+// (`control`):
 //
 //   chi_0 = <phi.w>,     D = S - dt w.xi,     chi(t) t = chi_0 t - [<(sum D)^2> - <sum D^2>]/(2 kT)
 //
-// with S what Phi grows by in a step. For a w that is only nearly right chi_0 is 2 phi.w - w.R w, off by the square of its error. Time reversal makes Phi uncorrelated with the integral of the drift, which gives the sign;
-// the noise of D itself, of order dt per step, is no memory, so that the diagonal is left out. Where only every c-th step is
-// controlled, each stands for c of them, and pairs within these c for what <D D_c> and <D D_2c> extrapolate to.
+// with S what Phi grows by in a step. For a w that is only nearly right chi_0 is 2 phi.w - w.R w, off by the square of its
+// error. Time reversal makes Phi uncorrelated with the integral of the drift, which gives the sign; the noise of D itself,
+// of order dt per step, is no memory, so that the diagonal is left out. Where only every c-th step is controlled, each
+// stands for c of them, and pairs within these c for what <D D_c> and <D D_2c> extrapolate to.
 //
-// A stress of the whole box, integrated (analysis/helfand.h), is such a Phi too, but its noise moves nothing: it is uncorrelated with
-// what the configuration does later, and the drift adds to chi (`drift_adds`).
+// A stress of the whole box, integrated (analysis/helfand.h), is such a Phi too, but its noise moves nothing: it is
+// uncorrelated with what the configuration does later, and the drift adds to chi (`drift_adds`).
 //
-// chi is the slope of chi(t) t by least squares between the lags `fit_from` and `window`; every lag time is an origin. With one time tau
-// of the memory the line meets t = 0 at (chi_0 - chi) tau.
+// chi is the slope of chi(t) t by least squares between the lags `fit_from` and `window`; every lag time is an origin. With
+// one time tau of the memory the line meets t = 0 at (chi_0 - chi) tau.
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -82,7 +85,8 @@ class ModeGrowth {
   void load(const StateReader& in);
 
  private:
-  // A sample has of each wave <Phi^2>/(2 kT) by lag and its slope; with control also chi(t) by lag, the slope of chi(t) t, chi_0, and where the line of that slope meets t = 0.
+  // A sample has of each wave <Phi^2>/(2 kT) by lag and its slope; with control also chi(t) by lag, the slope of chi(t) t,
+  // chi_0, and where the line of that slope meets t = 0.
   std::size_t width() const { return controlled() ? 2 * lags_ + 4 : lags_ + 1; }
   std::size_t best(std::size_t wave) const {
     return wave * width() + (controlled() ? 2 * lags_ + 1 : lags_);

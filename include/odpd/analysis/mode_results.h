@@ -1,5 +1,6 @@
 #pragma once
-// What viscosities of several wave numbers are handed on as, whatever they were measured by: tables by k and by frequency, charts, and
+// What viscosities of several wave numbers are handed on as, whatever they were measured by: tables by k and by frequency,
+// charts, and
 //
 //   eta(k) = eta_0 + a k^2       at the smallest k (Palmer 1994), by least squares with the errors of eta(k) as weights.
 #include <complex>

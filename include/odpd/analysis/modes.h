@@ -1,20 +1,22 @@
 #pragma once
-// Viscosity at a wavelength 2 pi/k of particles without mass, from one run at rest: how far particles spread along transverse waves.
+// Viscosity at a wavelength 2 pi/k of particles without mass, from one run at rest: how far particles spread along
+// transverse waves.
 //
 //   Phi(t) = int_0^t sum_i phi_i o dr_i (Stratonovich),    eta(k) = N^2/(2 V k^2 chi),    <Phi(t)^2>/(2 kT) -> chi t
 //
-// with phi a wave of analysis/waves.h: forces h phi drive a flow of amplitude N h/(V eta k^2), which is all that d<Phi>/dt = h chi
-// says. In a step Phi grows by
+// with phi a wave of analysis/waves.h: forces h phi drive a flow of amplitude N h/(V eta k^2), which is all that d<Phi>/dt =
+// h chi says. In a step Phi grows by
 //
 //   S = dt [b sum phi(r).v1 + (1 - b) sum phi(r*).v2]
 //
-// as the step's displacement is the mean over its stages; phi(r) alone (Ito) would add a drift kT div(R^-1 phi) that grows with k.
-// analysis/mode_growth.h has how chi follows, with the noise taken out where one asks for it (`control`), and eta(t; k) by lag t,
-// which rises from the viscosity of frozen configurations to eta(k). Constituents of bodies and beads of molecules are particles as
-// all others: eta(k) is that of the suspension, seen by a force on all of it.
+// as the step's displacement is the mean over its stages; phi(r) alone (Ito) would add a drift kT div(R^-1 phi) that grows
+// with k. analysis/mode_growth.h has how chi follows, with the noise taken out where one asks for it (`control`), and eta(t;
+// k) by lag t, which rises from the viscosity of frozen configurations to eta(k). Constituents of bodies and beads of
+// molecules are particles as all others: eta(k) is that of the suspension, seen by a force on all of it.
 //
-// With one time of the memory, chi*(omega) = chi_0 - (chi_0 - chi)/(1 + i omega tau), so that eta* = N^2/(2 V k^2 chi*) is that of a
-// Jeffreys fluid, from eta(k) at omega = 0 to that of frozen configurations, and the storage modulus is G' = - omega Im eta*.
+// With one time of the memory, chi*(omega) = chi_0 - (chi_0 - chi)/(1 + i omega tau), so that eta* = N^2/(2 V k^2 chi*) is
+// that of a Jeffreys fluid, from eta(k) at omega = 0 to that of frozen configurations, and the storage modulus is G' = -
+// omega Im eta*.
 //
 // eta_inf(k) = 2 <phi R phi>/(V k^2) is the friction of particles that all follow the wave. Frozen configurations resist less, as
 // particles in them give way.

@@ -74,9 +74,9 @@ class Observer {
     const std::int64_t last = std::min(clock.measured_steps(), settings_.until);
     return std::max<std::int64_t>(0, last / settings_.every - settings_.from / settings_.every);
   }
-  /// Where in a step its samples stand, and with them the rows of its series: 0 where it looks at the record's first stage (edges,
-  /// forces and positions at the step's start), 1/2 at v_mid or at what acts during the step (means over the stages), 1 at the
-  /// particles as the step leaves them.
+  /// Where in a step its samples stand, and with them the rows of its series: 0 where it looks at the record's first stage
+  /// (edges, forces and positions at the step's start), 1/2 at v_mid or at what acts during the step (means over the
+  /// stages), 1 at the particles as the step leaves them.
   virtual double moment() const { return 0.0; }
 
   /// One sample from the step just done (clock.step already advanced past it): hands its numbers to `add`. All ranks of the
@@ -85,9 +85,9 @@ class Observer {
   virtual void measure(const Clock& clock, const Particles<D>& particles,
                        const StepRecord<D>& record) = 0;
 
-  /// Adds all it has. The names of its scalars are the same at any time, their values NaN where there is nothing to tell (yet): what a
-  /// case asks for is compared with them before it runs. Tables and charts come with the first sample. Unless overridden: the
-  /// mean of each column, as <name>.<column>.
+  /// Adds all it has. The names of its scalars are the same at any time, their values NaN where there is nothing to tell
+  /// (yet): what a case asks for is compared with them before it runs. Tables and charts come with the first sample. Unless
+  /// overridden: the mean of each column, as <name>.<column>.
   virtual void add_results(Results& results) const;
 
   /// Columns after `time`, which is that of `moment`, and the row of the newest sample (empty: nothing new to write). Unless

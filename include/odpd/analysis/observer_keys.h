@@ -41,5 +41,10 @@ struct ControlKeys {
 
 /// `control`, `control_every`, `control_tolerance`; a window must hold four controlled steps.
 ControlKeys read_control(const Config& config, double window, double dt);
+/// A note for results: what control may miss where a scene has bonds.
+std::string control_with_bonds(const std::string& observer);
+
+/// Refuses a `window` that is given and does not hold two steps.
+void require_two_steps(const Config& config, double window, double dt);
 
 }  // namespace odpd

@@ -25,9 +25,9 @@ struct ObserverKind {
 template <int D>
 const std::vector<ObserverKind<D>>& observer_kinds();
 
-/// The observers of a case: its [[observe]] entries, of the kinds of the table and of `own`, and those that are always there. Under an
-/// `integrator` without time (Monte Carlo) those of motion are left out. `scene` must outlive them. Throws ConfigError for unknown
-/// kinds, bad keys, names given twice.
+/// The observers of a case: its [[observe]] entries, of the kinds of the table and of `own`, and those that are always
+/// there. Under an `integrator` without time (Monte Carlo) those of motion are left out. `scene` must outlive them. Throws
+/// ConfigError for unknown kinds, bad keys, names given twice.
 template <int D>
 std::vector<std::unique_ptr<Observer<D>>> make_observers(
     const Config& config, const Scene<D>& scene, const Clock& clock,

@@ -1,13 +1,13 @@
 #pragma once
-// Velocities of particles and of centres, against those of Maxwell. Per species (its free particles), [[molecule]] and free [[body]]
-// (its centres), and per component,
+// Velocities of particles and of centres, against those of Maxwell. Per species (its free particles), [[molecule]] and free
+// [[body]] (its centres), and per component,
 //
 //   <(v - V)^2> = (kT/M) (1 - M/M_all),   M = p m of a centre of p particles, p = 1 of a particle
 //
-// exactly, at any density and in any potential, and the density of u = (v - V)/sqrt(that) is exp(-u^2/2)/sqrt(2 pi). V is the mean
-// velocity of all that moves, of mass M_all. Where something takes momentum from them (a wall, a held body, zeta_0), V = 0 and the
-// second factor is 1. Under [shear] v is less that of the flow. v is that of the step's start, whose variance the integrators state
-// (dynamics/step_record.h). At m = 0 there is no such velocity.
+// exactly, at any density and in any potential, and the density of u = (v - V)/sqrt(that) is exp(-u^2/2)/sqrt(2 pi). V is
+// the mean velocity of all that moves, of mass M_all. Where something takes momentum from them (a wall, a held body,
+// zeta_0), V = 0 and the second factor is 1. Under [shear] v is less that of the flow. v is that of the step's start, whose
+// variance the integrators state (dynamics/step_record.h). At m = 0 there is no such velocity.
 #include "odpd/analysis/observer.h"
 
 namespace odpd {

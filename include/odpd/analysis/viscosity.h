@@ -7,8 +7,8 @@
 //   <name>.sine     amplitude under a sinusoidal force, n F L^2/(4 pi^2 k^2 A), k waves in L     (profile.h)
 //   <name>.helfand  growth of the integrated stress in a fully periodic box at rest              (helfand.h, mode_growth.h)
 //
-// `viscosity` (`<name>.viscosity` under another name) is the one of smallest standard error; a note says which. Errors of quotients
-// take numerator and denominator as independent.
+// `viscosity` (`<name>.viscosity` under another name) is the one of smallest standard error; a note says which. Errors of
+// quotients take numerator and denominator as independent.
 #include <memory>
 #include <optional>
 
@@ -32,8 +32,8 @@ struct ViscosityScene {
   }
 };
 
-/// The first that applies: steady [shear], facing walls that move differently, a sinusoidal force, a uniform force between walls or in a region, a
-/// fully periodic box at rest with kT > 0.
+/// The first that applies: steady [shear], facing walls that move differently, a sinusoidal force, a uniform force between
+/// walls or in a region, a fully periodic box at rest with kT > 0.
 template <int D>
 ViscosityScene viscosity_scene(const Scene<D>& scene);
 

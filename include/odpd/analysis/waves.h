@@ -3,8 +3,8 @@
 //
 //   phi_i = e_c cos(k r_d) or e_c sin(k r_d),   k = 2 pi number/edge along d, c != d
 //
-// for each wave number all directions d, all components c across it and both phases. Longitudinal waves (c = d) come with them where
-// one asks for them.
+// for each wave number all directions d, all components c across it and both phases. Longitudinal waves (c = d) come with
+// them where one asks for them.
 #include <cstdint>
 #include <vector>
 
@@ -38,7 +38,8 @@ class Waves {
   /// sum_i phi_i . vector_i of every mode; all ranks together, as what follows.
   std::vector<double> sums(const Particles<D>& particles, const std::vector<Vec<D>>& position,
                            const std::vector<Vec<D>>& vector) const;
-  /// phi R phi of each wave number, the mean over its transverse modes: power per velocity squared of particles that follow the wave.
+  /// phi R phi of each wave number, the mean over its transverse modes: power per velocity squared of particles that follow
+  /// the wave.
   std::vector<double> friction(const Particles<D>& particles, const PairNetwork<D>& network) const;
 
  private:

@@ -43,9 +43,10 @@ struct StepRecord {
   std::int64_t alarm_crossings = 0;  ///< particles the mirror had to catch in this step
 
   /// P (P^T R P)^+ P^T f at `start`: the velocities (length/time, one per particle) that a force f on each particle causes
-  /// there besides what acts in the step. One more solve, by the solver of the run, to this tolerance (0: that of the run); it touches none of the later solves. A force on all particles alike counts for
-  /// nothing where no drag and no particle of known velocity takes it up. Empty for schemes that are not of two stages; on all
-  /// ranks together. Throws SolverError when the solver did not converge.
+  /// there besides what acts in the step. One more solve, by the solver of the run, to this tolerance (0: that of the run);
+  /// at mass 0 it touches none of the later solves, with mass a grid may be built anew. A force on all particles alike
+  /// counts for nothing where no drag and no particle of known velocity takes it up. Empty for schemes that are not of two
+  /// stages; on all ranks together. Throws SolverError when the solver did not converge.
   std::function<std::vector<Vec<D>>(const std::vector<Vec<D>>& force, double tolerance)> respond;
 
   bool has_corrector() const { return start_weight < 1.0; }

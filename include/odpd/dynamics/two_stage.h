@@ -11,7 +11,8 @@
 //
 //   q_p = (1 - e) q1 + e q2 + (1 - b - e) g/A,    e = (1 - b)/(1 + (zeta/20 M)^2),    g = F_U(r*) - F_U(r),
 //
-// A = g (M + R) g/g g, zeta the mean friction of a particle, F_U the forces of potentials with the terms of bonds below.
+// A = g (M + R) g/g g, zeta the mean diagonal of R (with zeta_0 and the terms of bonds below), F_U the forces of potentials
+// with the terms of bonds below.
 // * M >> R: q_p = q_mid up to O(dt^4), of second order.
 // * M << R: one R acts on q and its noise, so that q' keeps the variance kT/m: with A_k = (M + R_k)^-1 it is off by the factor
 //   1 + e <A_2/A_1 - 1> (M + R_1)/R_1 without forces. F_U at r alone would heat by K dt/2R, with K the Laplacian of U per

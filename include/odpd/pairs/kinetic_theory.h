@@ -1,6 +1,6 @@
 #pragma once
-// A fluid by kinetic theory without structure (g = 1, particles that follow the mean flow; Marsh 1998, Nguyen 2021), of any pair model.
-// With [f] the integral of f over d-dimensional space (pairs/pair_moments.h):
+// A fluid by kinetic theory without structure (g = 1, particles that follow the mean flow; Marsh 1998, Nguyen 2021), of any
+// pair model. With [f] the integral of f over d-dimensional space (pairs/pair_moments.h):
 //
 //   pressure   p = n kT + n^2 [r f_c]/(2 d)
 //   viscosity  eta = n^2 [r^2 (zeta_par + (d + 1) zeta_perp)]/(2 d (d+2)) + rho D/2
@@ -17,7 +17,8 @@
 namespace odpd {
 
 /// What kinetic theory says of a fluid. Infinite: Sc, alpha, w_0 and speed_of_sound at mass = 0, alpha without force,
-/// diffusion without friction, kappa_inverse and tau_P at kT = 0. Not a number: undefined, where an integral diverges, and tau_P in 2D.
+/// diffusion without friction, kappa_inverse and tau_P at kT = 0. Not a number: undefined, where an integral diverges, and
+/// tau_P in 2D.
 struct KineticTheory {
   double rho = 0.0;           ///< n m (mass/length^d)
   double eta_friction = 0.0;  ///< (3.8); an upper bound on that of friction alone

@@ -9,11 +9,13 @@
 //   dynamics       Sc = eta/(rho D),  D = d kT/(n gamma [w_D]),  rho = n m  (3.12)  ->  s (3.13), (3.17)
 //                  or, in 3D, tau_P = R^2/D,  R = kT/(6 pi D eta)           (4.43), (4.44)  ->  s (4.48), (4.49)
 //
-// tau_P is the time in which a particle of the Stokes-Einstein radius R diffuses by R: (kT)^2/(36 pi^2 D^3 eta^2) (4.45). No mass is
-// in it, so it sets s of a massless fluid too, for which Sc is infinite. In 2D there is no such radius: eta D/kT is a pure number.
+// tau_P is the time in which a particle of the Stokes-Einstein radius R diffuses by R: (kT)^2/(36 pi^2 D^3 eta^2) (4.45). No
+// mass is in it, so it sets s of a massless fluid too, for which Sc is infinite. In 2D there is no such radius: eta D/kT is
+// a pure number.
 //
-// The reverse, what kinetic theory says of a fluid: pairs/kinetic_theory.h. Of the friction the formulas count gamma alone, not
-// gamma_perp and gamma_far. These are estimates: the viscosity of friction alone is at most eta, and much less at small mass and density.
+// The reverse, what kinetic theory says of a fluid: pairs/kinetic_theory.h. Of the friction the formulas count gamma alone,
+// not gamma_perp and gamma_far. These are estimates: the viscosity of friction alone is at most eta, and much less at small
+// mass and density.
 #include <optional>
 #include <string>
 

@@ -4,8 +4,9 @@
 //   z = q(D^-1 A) D^-1 r + P V P^T r,   q(L) = 2 (2.15 - L), or, where few neighbours share a particle's friction,
 //                                       q(L) = 2 (1 - T_4(x)/T_4(x_0))/L,  x = (2.1 - 2 L)/1.9, x_0 = 2.1/1.9
 //
-// D the block diagonal (of a rigid body all of its unknowns), P multilinear interpolation from a regular grid of about 1.7 cutoffs to the particles, V a
-// multigrid cycle for the Galerkin operator of the grid. The eigenvalues of D^-1 A are at most 2, since
+// D the block diagonal (of a rigid body all of its unknowns), P multilinear interpolation from a regular grid of about 1.7
+// cutoffs to the particles, V a multigrid cycle for the Galerkin operator of the grid. The eigenvalues of D^-1 A are at most
+// 2, since
 //
 //   2 D - A = sum_edges g g^T on v_i + v_j (and what holds a node) >= 0,
 //
