@@ -3,7 +3,7 @@
 //   G = dt [b phi(r).v1 + (1 - b) phi(r*).v2],   S = dt [phi(r) + phi(r')]/2 . v,   I = dt phi(r).v,   v = b v1 + (1 - b) v2
 //
 // In a step S - G is of order dt beside G, I - G of order dt^(1/2): both would do, were it not that what the latter leaves
-// out has a mean. Over a time S and G, which are Stratonovich's sum as dt -> 0, grow alike; Ito's, I, grows more at any dt.
+// out has a mean. Over a time S and G, which are Stratonovich's sum as dt -> 0, grow alike; Ito's, I, does not: more where k is large, a little less where it is small.
 #include <array>
 #include <cmath>
 #include <cstdio>

@@ -376,10 +376,29 @@ TEST(Modes, RefusesWhatIsNoFluidAtRest) {
   refused(s, "numbers = [2, 1]\n", {"numbers", "ascending"});
   refused(s, "numbers = [1.5]\n", {"numbers", "whole"});
   refused(s, "numbers = [1]\ncount = 3\n", {"count"});
+  refused(s, "numbers = [2000]\n", {"numbers", "1000"});
+  refused(s, "count = 2000\n", {"count", "1000"});
+  refused(s, "extrapolate = 1\n", {"extrapolate", "2"});
+  refused(s, "count = 3\nextrapolate = 4\n", {"extrapolate", "all 3"});
+  refused(s, "window = 0.03\n", {"window", "two steps"});
   refused(s, "every = 2\n", {"every", "every step"});
   refused(s, "window = 0.5\nfit_from = 0.5\n", {"fit_from", "window"});
   refused(s, "control_every = 2\n", {"control_every"});
   refused(s, "control = true\ncontrol_every = 20\n", {"control_every", "four"});
+}
+
+// Any case may serve as a reference by Monte Carlo, which leaves observers of motion out.
+TEST(Modes, LetMonteCarloRunTheirCases) {
+  const auto s = records::periodic<2>(5.0, {{{1.0, 1.0}}, {{3.0, 3.0}}});
+  const Scene<2> scene(s);
+  for (const char* kind : {"modes", "viscosity"}) {
+    const Config config = Config::from_text(
+        std::string("[[observe]]\nkind = \"") + kind + "\"\ncontrol = true\n", "case.toml");
+    EXPECT_NO_THROW(odpd::make_observers<2>(config, scene, odpd::Clock{.dt = 0.02},
+                                            odpd::integrator_traits("monte-carlo")))
+        << kind;
+    EXPECT_NO_THROW(config.reject_unread()) << kind;
+  }
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ expect_error 1 "$odpd" run level --dry-run --set fluid.mass=2.0 --set fluid.cuto
 expect_error 1 "$odpd" run level --dry-run --set fluid.mass=2.0 --set fluid.tau_P=1.0 -- '--set fluid.tau_P' '3D only'
 
 # Every case that comes with the program is in order.
-for case in "$source_root"/cases/*/case.toml; do
+for case in "$source_root"/cases/*/*.toml; do
   checks=$((checks + 1))
   timeout 60 "$odpd" run "$case" --dry-run >"$out_text" 2>"$err_text" && continue
   fail "--dry-run of $case"
