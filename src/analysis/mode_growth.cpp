@@ -10,13 +10,13 @@ namespace odpd {
 
 namespace {
 
-constexpr std::int64_t most_lags = 50;
+constexpr std::int64_t most_growth_lags = 50;
 
-// A multiple of the steps between controlled ones, for about most_lags of them in a window.
+// A multiple of the steps between controlled ones, for about most_growth_lags of them in a window.
 std::int64_t steps_between_lags(const ModeGrowth::Settings& s) {
   const std::int64_t together = std::max<std::int64_t>(1, s.control_every);
   return together *
-         std::max<std::int64_t>(1, std::llround(s.window / s.dt) / (together * most_lags));
+         std::max<std::int64_t>(1, std::llround(s.window / s.dt) / (together * most_growth_lags));
 }
 
 // One more of the last lag times.
