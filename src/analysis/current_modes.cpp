@@ -387,15 +387,6 @@ Chart CurrentModes<D>::correlation_chart(const Results& results) const {
 }
 
 template <int D>
-std::vector<std::string> CurrentModes<D>::series_columns() const {
-  std::vector<std::string> columns;
-  for (const auto& mode : waves_.modes())
-    columns.push_back(fmt::format("j_{}_{}{}_{}", waves_.number(mode.wave), "xyz"[mode.axis],
-                                  "xyz"[mode.component], mode.sine ? "sin" : "cos"));
-  return columns;
-}
-
-template <int D>
 void CurrentModes<D>::save(StateWriter& out) const {
   out.write("sampled", std::vector<std::int64_t>{samples_});
   out.write("current", current_);

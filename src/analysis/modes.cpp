@@ -178,8 +178,9 @@ void Modes<D>::add_results(Results& results) const {
   if (!growth_.controlled()) return;
   // Of frequencies that the window and the step allow.
   const Table by_omega =
-      modes.moduli(0.1 / window_, 1.0 / dt_,
-                   [&](std::size_t wave, double omega) { return jeffreys(wave, omega); });
+      modes.moduli(0.1 / window_, 1.0 / dt_, [&](std::size_t wave, double omega) {
+        return jeffreys(wave, results.find(modes.scalar("tau", wave))->mean, omega);
+      });
   results.charts.emplace_back(name + "_moduli", modes.modulus_chart(by_omega, true));
   results.tables.emplace_back(name + "_moduli", by_omega);
 }
@@ -217,12 +218,11 @@ Table Modes<D>::lag_table() const {
 
 // eta* of a Jeffreys fluid; undefined where errors hide its memory.
 template <int D>
-std::complex<double> Modes<D>::jeffreys(std::size_t wave, double omega) const {
+std::complex<double> Modes<D>::jeffreys(std::size_t wave, double tau, double omega) const {
   const double chi = growth_.chi(wave).mean, chi_0 = growth_.frozen(wave).mean;
-  const double tau = growth_.memory_time(wave).mean, turn = omega * tau;
   const double undefined = std::numeric_limits<double>::quiet_NaN();
   if (!(tau > 0.0)) return {undefined, undefined};
-  return viscosity(wave, 1.0) / (chi_0 - (chi_0 - chi) / std::complex(1.0, turn));
+  return viscosity(wave, 1.0) / (chi_0 - (chi_0 - chi) / std::complex(1.0, omega * tau));
 }
 
 template <int D>
@@ -242,15 +242,6 @@ Chart Modes<D>::lag_chart(const Table& by_lag) const {
     chart.curves.push_back(std::move(curve));
   }
   return chart;
-}
-
-template <int D>
-std::vector<std::string> Modes<D>::series_columns() const {
-  std::vector<std::string> columns;
-  for (const auto& mode : waves_.modes())
-    columns.push_back(fmt::format("phi_{}_{}{}_{}", waves_.number(mode.wave), "xyz"[mode.axis],
-                                  "xyz"[mode.component], mode.sine ? "sin" : "cos"));
-  return columns;
 }
 
 template <int D>

@@ -1,5 +1,7 @@
 #include "odpd/analysis/waves.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -73,6 +75,15 @@ Waves<D>::Waves(std::vector<std::int64_t> numbers, std::vector<int> axes, double
       for (int c = 0; c < D; ++c)
         for (const bool sine : {false, true})
           if (longitudinal || c != axis) modes_.push_back({wave, axis, c, sine});
+}
+
+template <int D>
+std::vector<std::string> Waves<D>::names(const std::string& prefix) const {
+  std::vector<std::string> names;
+  for (const Mode& mode : modes_)
+    names.push_back(fmt::format("{}_{}_{}{}_{}", prefix, numbers_[mode.wave], "xyz"[mode.axis],
+                                "xyz"[mode.component], mode.sine ? "sin" : "cos"));
+  return names;
 }
 
 template <int D>

@@ -59,7 +59,7 @@ class CurrentModes : public Observer<D> {
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   /// J of each mode.
-  std::vector<std::string> series_columns() const override;
+  std::vector<std::string> series_columns() const override { return waves_.names("j"); }
   std::vector<double> series_row() const override { return current_; }
   void save(StateWriter& out) const override;
   void load(const StateReader& in) override;

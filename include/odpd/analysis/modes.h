@@ -55,7 +55,7 @@ class Modes : public Observer<D> {
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
   /// Phi of each mode.
-  std::vector<std::string> series_columns() const override;
+  std::vector<std::string> series_columns() const override { return waves_.names("phi"); }
   std::vector<double> series_row() const override { return growth_.integral(); }
   void save(StateWriter& out) const override;
   void load(const StateReader& in) override;
@@ -68,7 +68,7 @@ class Modes : public Observer<D> {
   Scalar viscosity(const std::string& what, std::size_t wave,
                    const ModeGrowth::Estimate& chi) const;
   ModeResults as_results() const;
-  std::complex<double> jeffreys(std::size_t wave, double omega) const;
+  std::complex<double> jeffreys(std::size_t wave, double tau, double omega) const;
   Table lag_table() const;
   Chart lag_chart(const Table& by_lag) const;
 

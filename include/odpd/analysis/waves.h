@@ -6,6 +6,7 @@
 // for each wave number all directions d, all components c across it and both phases. Longitudinal waves (c = d) come with
 // them where one asks for them.
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "odpd/pairs/network.h"
@@ -31,6 +32,8 @@ class Waves {
   double k(std::size_t wave) const;
   /// By wave number.
   const std::vector<Mode>& modes() const { return modes_; }
+  /// `prefix`_<number>_<axis><component>_<phase> of each, for a series.
+  std::vector<std::string> names(const std::string& prefix) const;
   std::size_t modes_per_wave() const { return modes_.size() / numbers_.size(); }
 
   /// phi of a mode at these positions.
