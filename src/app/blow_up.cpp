@@ -226,7 +226,7 @@ double BlowUpWatch<D>::friction_limit(const IntegratorSettings& integrator,
 
 template <int D>
 std::optional<double> BlowUpWatch<D>::repulsion_limit() const {
-  return explicit_step_limit(scene_.pair_moments(), scene_.settings().mass);
+  return scene_.explicit_step_limit();
 }
 
 template <int D>

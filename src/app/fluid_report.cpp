@@ -50,8 +50,9 @@ std::vector<double> fractions(const Scene<D>& scene) {
 
 template <int D>
 KineticTheory kinetic_theory_of(const Scene<D>& scene) {
-  return kinetic_theory<D>(scene.pair_moments(), fractions(scene), density_of(scene),
-                           scene.settings().mass);
+  const double mass = scene.settings().mass;
+  return kinetic_theory<D>(scene.pair_moments(), fractions(scene), density_of(scene), mass,
+                           scene.model().reference_state(mass));
 }
 
 Named asked_values(const PhysicalInputs& in) {
@@ -69,7 +70,7 @@ Named asked_values(const PhysicalInputs& in) {
 
 template <int D>
 Named kinetic_values(const Scene<D>& scene, const KineticTheory& k) {
-  const auto limit = explicit_step_limit(scene.pair_moments(), scene.settings().mass);
+  const auto limit = scene.explicit_step_limit();
   return {{"eta", k.eta()},
           {"eta_friction", k.eta_friction},
           {"eta_kinetic", k.eta_kinetic},

@@ -100,8 +100,7 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
   if (const std::string warning = simulation.integrator().warning(); !warning.empty())
     log_warning(warning);
   // Explicit conservative forces are accurate to one to two times this limit.
-  const std::optional<double> limit =
-      explicit_step_limit(simulation.scene().pair_moments(), simulation.scene().settings().mass);
+  const std::optional<double> limit = simulation.scene().explicit_step_limit();
   if (repulsion_is_explicit(settings.integrator) && limit && settings.clock.dt > 2.0 * *limit)
     log_warning(fmt::format(
         "integrator.dt = {} is beyond {:.3g}, twice the limit of explicit repulsion: it "

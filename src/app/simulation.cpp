@@ -59,9 +59,28 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings,
   if (const std::string why = shear_objection(settings_.integrator.name);
       !why.empty() && scene_.box().shear)
     config.table("integrator").fail("name", why);
+  refuse_densities(config);
   config.reject_unread();
   integrator_->prepare(dynamics_);
   check_observables(config);
+}
+
+template <int D>
+void Simulation<D>::refuse_densities(const Config& config) const {
+  const Config integrator = config.table("integrator");
+  const PairModel<D>& model = scene_.model();
+  if (model.densities() != nullptr &&
+      !integrator_traits(settings_.integrator.name).repulsion_limits_dt && in_time())
+    integrator.fail("name",
+                    fmt::format("'{}' takes the stiffness of pairs, and that of densities couples "
+                                "partners of partners: use trapezoidal",
+                                settings_.integrator.name));
+  const auto reference = model.reference_state(dynamics_.constants().mass);
+  if (reference && in_time() && clock_.dt >= reference->stable_step)
+    integrator.fail(
+        "dt", fmt::format("is {}: from {:.3g} on steps are unstable, and accurate up to about "
+                          "{:.2g}",
+                          clock_.dt, reference->stable_step, reference->accurate_step));
 }
 
 // A misspelt observable should not come out at the end of a long run.
@@ -119,10 +138,8 @@ void Simulation<D>::explain(const SolverError& error) {
 template <int D>
 void Simulation<D>::refuse_long_bond(const SolverError& error, const std::string& message) const {
   const auto* bond = dynamic_cast<const BondTooLongError*>(&error);
-  const bool large_step =
-      repulsion_is_explicit(settings_.integrator) &&
-      clock_.dt > explicit_step_limit(scene_.pair_moments(), dynamics_.constants().mass)
-                      .value_or(clock_.dt);
+  const bool large_step = repulsion_is_explicit(settings_.integrator) &&
+                          clock_.dt > scene_.explicit_step_limit().value_or(clock_.dt);
   if (bond != nullptr && !large_step && !bonds_are_explicit(settings_.integrator))
     throw BondTooLongError(message, bond->particle());
 }

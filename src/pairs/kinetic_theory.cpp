@@ -39,12 +39,14 @@ struct Mixture {
 
 template <int D>
 KineticTheory kinetic_theory(const std::vector<PairMoments>& pairs,
-                             const std::vector<double>& fraction, double density, double mass) {
+                             const std::vector<double>& fraction, double density, double mass,
+                             const std::optional<ReferenceState>& reference) {
   const Mixture mean(pairs, fraction);
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const double n = density, kT = mean.kT;
-  const double repulsion = mean.virial / D;       // 2 (p - n kT)/n^2
-  const double compression = kT + n * repulsion;  // dp/dn
+  const double repulsion = mean.virial / D;  // 2 (p - n kT)/n^2
+  const double compression =
+      kT + (reference ? reference->bulk_modulus / n : n * repulsion);  // dp/dn
   KineticTheory k;
   k.rho = n * mass;
   k.eta_friction = n * n * mean.shear / (2.0 * D * (D + 2));
@@ -56,8 +58,8 @@ KineticTheory kinetic_theory(const std::vector<PairMoments>& pairs,
   k.tau_P = diffusion_time<D>(kT, k.diffusion, k.eta_friction);
   k.Sc = inertia > 0.0 ? k.eta() / inertia : infinity;
   k.alpha = mass > 0.0 ? mean.alpha_mass / mass : infinity;
-  k.energy = 0.5 * n * mean.energy;
-  k.pressure = n * kT + 0.5 * n * n * repulsion;
+  k.energy = reference ? std::nan("") : 0.5 * n * mean.energy;
+  k.pressure = n * kT + (reference ? reference->pressure : 0.5 * n * n * repulsion);
   k.bulk_modulus = n * compression;
   k.kappa_inverse = kT > 0.0 ? compression / kT : infinity;
   k.speed_of_sound = mass > 0.0 ? std::sqrt(compression / mass) : infinity;
@@ -65,8 +67,10 @@ KineticTheory kinetic_theory(const std::vector<PairMoments>& pairs,
 }
 
 template KineticTheory kinetic_theory<2>(const std::vector<PairMoments>&,
-                                         const std::vector<double>&, double, double);
+                                         const std::vector<double>&, double, double,
+                                         const std::optional<ReferenceState>&);
 template KineticTheory kinetic_theory<3>(const std::vector<PairMoments>&,
-                                         const std::vector<double>&, double, double);
+                                         const std::vector<double>&, double, double,
+                                         const std::optional<ReferenceState>&);
 
 }  // namespace odpd

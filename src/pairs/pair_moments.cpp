@@ -16,12 +16,17 @@ constexpr double unknown = std::numeric_limits<double>::infinity();
 constexpr double core_energy = 10.0;   // in kT
 constexpr std::size_t samples = 1024;  // of r, for the largest values
 
-// One pair of species. A model that refuses a distance has no numbers there.
+// One pair of species, with the forces that densities add where both particles have that of the reference. A model that refuses a distance
+// has no numbers there.
 template <int D>
 class PairFunction {
  public:
   PairFunction(const PairModel<D>& model, Site site_i, Site site_j)
       : model_(model), i_(site_i), j_(site_j) {
+    if (const auto reference = model.reference_state(0.0)) {
+      i_.density = j_.density = reference->density;
+      slope_ = model.densities()->energy(i_).first + model.densities()->energy(j_).first;
+    }
     for (const double r : model.kinks(site_i, site_j))
       if (r > end() && r < model.cutoff()) ends_.push_back(r);
     if (model.cutoff() > end()) ends_.push_back(model.cutoff());
@@ -29,7 +34,13 @@ class PairFunction {
 
   PairTerms operator()(double r) const {
     try {
-      return model_.pair(r, i_, j_);
+      PairTerms t = model_.pair(r, i_, j_);
+      if (slope_ != 0.0) {
+        const Derivatives w = model_.densities()->weight(r, i_, j_);
+        t.f_c -= slope_ * w.first;
+        t.k_c += slope_ * w.second;
+      }
+      return t;
     } catch (const Error&) {
       const double none = std::nan("");
       return {none, none, none, none, none, none};
@@ -43,6 +54,7 @@ class PairFunction {
 
   const PairModel<D>& model_;
   Site i_, j_;
+  double slope_ = 0.0;  // psi'(d_i) + psi'(d_j)
   std::vector<double> ends_;
 };
 

@@ -6,6 +6,7 @@
 #include "odpd/pairs/dpd_keys.h"
 #include "odpd/pairs/gaussian.h"
 #include "odpd/pairs/physical_keys.h"
+#include "odpd/pairs/sdpd.h"
 #include "odpd/pairs/table_model.h"
 
 namespace odpd {
@@ -16,7 +17,7 @@ template <int D>
 struct Row {
   const char* name;
   std::shared_ptr<const PairModel<D>> (*read)(const FluidKeys&);
-  bool physical_inputs;  // takes eta, ..., calibration
+  bool physical_inputs;  // reads eta, ..., calibration itself
 };
 
 template <int D>
@@ -25,6 +26,7 @@ const std::vector<Row<D>>& table() {
       {"dpd", &read_dpd<D>, true},
       {"table", &read_table_model<D>, false},
       {"gaussian", &read_force_model<D, GaussianForce>, false},
+      {"sdpd", &read_sdpd<D>, true},
   };
   return rows;
 }

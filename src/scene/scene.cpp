@@ -54,6 +54,15 @@ Scene<D>::Scene(SceneSettings<D> settings, const Communicator& ranks)
 }
 
 template <int D>
+std::optional<double> Scene<D>::explicit_step_limit() const {
+  const double mass = settings_.mass;
+  std::optional<double> limit = odpd::explicit_step_limit(pair_moments_, mass);
+  const auto reference = model_->reference_state(mass);
+  if (limit && reference) limit = std::min(*limit, reference->accurate_step);
+  return limit;
+}
+
+template <int D>
 void Scene<D>::start_flow() {
   const Shear& shear = *settings_.box.shear;
   const auto up = index(shear.gradient);

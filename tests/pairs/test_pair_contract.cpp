@@ -135,7 +135,7 @@ TYPED_TEST(PairContract, NothingActsFromTheCutoffOn) {
 
 TYPED_TEST(PairContract, TermsAreSymmetricAndFrictionIsNotNegative) {
   this->for_each_model([](const auto& model) {
-    bool conservative = false, thermal = false;
+    bool conservative = model.densities() != nullptr, thermal = false;
     for (const auto& [i, j] : site_pairs)
       for (int k = 0; k <= 200; ++k) {
         const double r = model.cutoff() * k / 200.0;
@@ -151,6 +151,18 @@ TYPED_TEST(PairContract, TermsAreSymmetricAndFrictionIsNotNegative) {
     EXPECT_EQ(model.conservative(), conservative);
     EXPECT_EQ(model.thermal(), thermal);
   });
+}
+
+// What an edge has: of a model with densities also what these add to the pair.
+template <int D>
+PairTerms edge_terms(const PairModel<D>& model, double r, Site i, Site j) {
+  PairTerms t = model.pair(r, i, j);
+  if (const odpd::Densities* densities = model.densities()) {
+    const double slope = densities->energy(i).first + densities->energy(j).first;
+    t.f_c -= slope * densities->weight(r, i, j).first;
+    t.k_c += slope * densities->weight(r, i, j).second;
+  }
+  return t;
 }
 
 // Kernels fuse multiply-adds and work in another order, so to rounding.
@@ -174,9 +186,12 @@ TYPED_TEST(PairContract, EdgesAreWhatItSaysOfPairs) {
     ASSERT_GT(network.size(), 300);
     bool transverse = false;
     for (std::size_t k = 0; k < network.i.size(); ++k) {
-      const Site i = site_of(particles, static_cast<std::size_t>(network.i[k])),
-                 j = site_of(particles, static_cast<std::size_t>(network.j[k]));
-      const auto expected = numbers(model.pair(network.r[k], i, j));
+      const auto site = [&](std::int32_t p) {
+        const auto at = static_cast<std::size_t>(p);
+        return site_of(particles, at, network.densities.empty() ? 0.0 : network.densities.d[at]);
+      };
+      const auto expected =
+          numbers(edge_terms(model, network.r[k], site(network.i[k]), site(network.j[k])));
       const auto edge = [k](const PairNetwork<D>& n) {
         return std::array{n.u[k], n.f_c[k], n.k_c[k], n.zeta_par[k], n.zeta_perp[k], n.kT[k]};
       };

@@ -43,6 +43,9 @@ inline const std::vector<ModelExample>& model_examples() {
       {.name = "gaussian",
        .fluid = "a = 18.5\nw = 0.3\ngamma = 4.5\nkT = 1.0\n",
        .pair = "a = 30.0\nw = 0.25\ncutoff = 0.9\n"},
+      {.name = "sdpd",
+       .fluid = "eta = 3.0\nbulk_modulus = 40.0\nbackground_pressure = 40.0\nkT = 1.0\n",
+       .pair = "eta = 4.5\n"},
   };
   return examples;
 }

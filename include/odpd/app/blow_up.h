@@ -29,7 +29,7 @@
 
 namespace odpd {
 
-/// Whether explicit_step_limit (pairs/pair_moments.h) concerns this integrator.
+/// Whether Scene::explicit_step_limit concerns this integrator.
 bool repulsion_is_explicit(const IntegratorSettings& integrator);
 /// Whether it takes bonds explicitly, so that a smaller step may cure one that has become too long.
 bool bonds_are_explicit(const IntegratorSettings& integrator);

@@ -72,6 +72,8 @@ class Simulation {
   const StepRecord<D>& named_step();
   [[noreturn]] void explain(const SolverError& error);
   void refuse_long_bond(const SolverError& error, const std::string& message) const;
+  // Schemes and steps that no fluid of densities can take.
+  void refuse_densities(const Config& config) const;
   void check_observables(const Config& config) const;
   void stop_at_target();
   /// The state that was judged last.

@@ -71,6 +71,9 @@ class BondedModel : public PairModel<D> {
     pairs_->refuse_unknown(network, particles);
   }
   const Densities* densities() const override { return pairs_->densities(); }
+  std::optional<ReferenceState> reference_state(double mass) const override {
+    return pairs_->reference_state(mass);
+  }
   bool conservative() const override { return pairs_->conservative() || !bonds_.empty(); }
   bool thermal() const override { return pairs_->thermal(); }
   double bonded_energy(std::size_t i, const Vec<D>& r, const Box<D>& box,

@@ -9,7 +9,8 @@
 //   collisions w_0 = n [zeta_par + (d - 1) zeta_perp]/(d m),  l_0 = sqrt(kT/m)/w_0    (thesis 4.1, 4.2)
 //   time       tau_P = R^2/D,  R = kT/(6 pi D eta_friction), 3D               (4.43) to (4.45)
 //
-// and in a mixture the means of [...] over the pairs of species at random.
+// The pressure of a model with densities is that of its ReferenceState, and so is what follows from it; its energy is undefined.
+// In a mixture [...] are means over the pairs of species at random.
 #include <vector>
 
 #include "odpd/pairs/pair_moments.h"
@@ -39,9 +40,10 @@ struct KineticTheory {
   double eta() const { return eta_friction + eta_kinetic; }
 };
 
-/// `pairs` [A * species + B]; `fraction`: of the particles, by species.
+/// `reference`: of a model with densities. `pairs` [A * species + B]; `fraction`: of the particles, by species.
 template <int D>
 KineticTheory kinetic_theory(const std::vector<PairMoments>& pairs,
-                             const std::vector<double>& fraction, double density, double mass);
+                             const std::vector<double>& fraction, double density, double mass,
+                             const std::optional<ReferenceState>& reference = std::nullopt);
 
 }  // namespace odpd

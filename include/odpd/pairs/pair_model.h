@@ -10,6 +10,7 @@
 //   the force, so motion samples what Monte Carlo samples, which takes u alone.
 //   Where the model has no numbers, u is infinite: trial moves do not go there, and refuse_unknown ends a stage that does. Nothing is
 //   ever not a number.
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -27,6 +28,16 @@ namespace odpd {
 struct ModelParameters {
   std::string heading = "parameters";
   std::vector<std::pair<std::string, double>> values;
+};
+
+/// A fluid of densities as its model means it, where integrals over pairs do not tell (pairs/pair_moments.h).
+struct ReferenceState {
+  double density = 0.0;       ///< d of its particles
+  double pressure = 0.0;      ///< without n kT (energy/length^d)
+  double bulk_modulus = 0.0;  ///< n dp/dn, without n kT (energy/length^d)
+  // Of explicit forces (time); infinite where nothing repels.
+  double accurate_step = 0.0;  ///< up to which they are accurate
+  double stable_step = 0.0;    ///< from which on they are garbage
 };
 
 /// Immutable once made: scenes share it.
@@ -56,6 +67,10 @@ class PairModel {
   virtual void refuse_unknown(const PairNetwork<D>&, const Particles<D>&) const {}
   /// What the energy has beyond pairs, as long as the model lives; null in models of pairs.
   virtual const Densities* densities() const { return nullptr; }
+  /// Of particles of this mass. Nothing in models of pairs, and where the model does not know.
+  virtual std::optional<ReferenceState> reference_state(double /*mass*/) const {
+    return std::nullopt;
+  }
   /// Some pair has a conservative force; otherwise energy and pressure are those of an ideal gas.
   virtual bool conservative() const = 0;
   /// Some pair has kT > 0.

@@ -9,6 +9,9 @@
 //
 // [f] is integrated between the model's kinks (core/quadrature.h). Where it diverges at r = 0 it is undefined.
 //
+// Of a model with densities, where it has a ReferenceState, f_c and k_c are those at its density, -(psi'(d_i) + psi'(d_j)) W' included; what
+// the density itself does to them is in no pair.
+//
 // A hard core, where u, f_c or k_c is not finite at r = 0, is looked at from the distance r_core on at which u falls below 10 kT: nearer
 // than that no pair comes. Without kT nothing tells how near they come.
 #include <optional>

@@ -32,6 +32,9 @@ class Scene : public Surroundings<D> {
   double largest_kT() const { return largest_kT_; }
   /// What follows from the pairs of species alone: [A * species + B].
   const std::vector<PairMoments>& pair_moments() const { return pair_moments_; }
+  /// The step up to which explicit repulsion is accurate, of pairs (pairs/pair_moments.h) and of densities: infinite where nothing
+  /// repels, nothing where it is not known.
+  std::optional<double> explicit_step_limit() const;
   /// Nothing takes momentum from the particles: no walls, no bodies of known motion and no uniform drag.
   bool conserves_momentum() const { return !settings_.held() && settings_.zeta_0 == 0.0; }
   /// Molecules in the order of their identities; their settings by `kind`.
