@@ -5,6 +5,7 @@
 #include "odpd/pairs/dpd.h"
 #include "odpd/pairs/dpd_keys.h"
 #include "odpd/pairs/gaussian.h"
+#include "odpd/pairs/mdpd.h"
 #include "odpd/pairs/physical_keys.h"
 #include "odpd/pairs/sdpd.h"
 #include "odpd/pairs/table_model.h"
@@ -27,6 +28,7 @@ const std::vector<Row<D>>& table() {
       {"table", &read_table_model<D>, false},
       {"gaussian", &read_force_model<D, GaussianForce>, false},
       {"sdpd", &read_sdpd<D>, true},
+      {"mdpd", &read_mdpd<D>, false},
   };
   return rows;
 }
