@@ -47,8 +47,8 @@ inline const std::vector<ModelExample>& model_examples() {
        .fluid = "eta = 3.0\nbulk_modulus = 40.0\nbackground_pressure = 40.0\nkT = 1.0\n",
        .pair = "eta = 4.5\n"},
       {.name = "mdpd",
-       .fluid = "A = -15.0\nB = 10.0\nr_d = 0.9\nfilled = true\ngamma = 4.5\nkT = 1.0\n",
-       .pair = "A = -10.0\nb = 0.9\ncutoff = 0.95\n"},
+       .fluid = "A = -10.0\nB = 12.0\nr_d = 0.9\nfilled = true\ngamma = 4.5\nkT = 1.0\n",
+       .pair = "A = -8.0\nb = 0.9\ncutoff = 0.95\n"},
   };
   return examples;
 }
