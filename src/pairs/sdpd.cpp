@@ -107,6 +107,7 @@ std::optional<ReferenceState> SdpdModel<D>::reference_state(double mass) const {
   const double sound = std::pow(n, -1.0 / D) * std::sqrt(n * mass / K);
   ReferenceState s;
   s.density = n;
+  s.spacing = std::pow(n, -1.0 / D);
   s.pressure = p_.state.background;
   s.bulk_modulus = K;
   s.stable_step = std::max(2.0 * longitudinal / K, sound);
@@ -161,6 +162,9 @@ SmoothingKernel::Shape read_kernel(const Config& fluid) {
   return static_cast<SmoothingKernel::Shape>(at);
 }
 
+// All particles fill space alike.
+double number_density(const FluidKeys& keys) { return keys.density + keys.others; }
+
 // K of [fluid], by itself or by the speed of sound.
 double read_modulus(const FluidKeys& keys) {
   const Config& fluid = keys.fluid;
@@ -172,15 +176,15 @@ double read_modulus(const FluidKeys& keys) {
     fluid.fail(
         "sound_speed",
         "there is no sound without mass (K = density mass sound_speed^2): give bulk_modulus");
-  return keys.density * keys.mass * c * c;
+  return number_density(keys) * keys.mass * c * c;
 }
 
 EquationOfState read_state(const FluidKeys& keys, double kT) {
   const Config& fluid = keys.fluid;
   EquationOfState state;
-  state.d_0 = keys.density;
+  state.d_0 = number_density(keys);
   state.modulus = read_modulus(keys);
-  const double usual = kT > 0.0 ? 100.0 * keys.density * kT : 0.1 * state.modulus;
+  const double usual = kT > 0.0 ? 100.0 * number_density(keys) * kT : 0.1 * state.modulus;
   state.background = fluid.number("background_pressure", usual);
   if (fluid.choice("equation_of_state", {"linear", "tait"}, "linear") == "tait") {
     state.exponent = fluid.positive("tait_exponent", 7.0);
@@ -242,14 +246,15 @@ template <int D>
 std::shared_ptr<const PairModel<D>> read_sdpd(const FluidKeys& keys) {
   const Config& fluid = keys.fluid;
   refuse_dpd_keys(fluid);
-  if (keys.density == 0.0)
+  if (number_density(keys) == 0.0)
     fluid.fail("density",
                "the equation of state and the support need it, and a start file says it too late: "
                "give fluid.density or fluid.count, in agreement with the file");
   SdpdParameters p;
   p.kT = fluid.non_negative("kT");
   p.kernel = read_kernel(fluid);
-  const double spacing = std::pow(keys.density, -1.0 / D), support = fluid.positive("support", 3.0);
+  const double spacing = std::pow(number_density(keys), -1.0 / D),
+               support = fluid.positive("support", 3.0);
   if (support < 1.0)
     fluid.fail("support",
                "is in spacings density^(-1/d): below 1 a particle has no neighbours, 3 is usual");

@@ -11,6 +11,7 @@
 #include "odpd/scene/body_places.h"
 #include "odpd/scene/drive_keys.h"
 #include "odpd/scene/vector_key.h"
+#include "odpd/scene/wall_keys.h"
 
 namespace odpd {
 
@@ -130,12 +131,30 @@ void read_fluid(const Config& config, const std::optional<Calibration>& calibrat
   const bool amount = fluid.has("density") || fluid.has("count");
   scene.mass =
       fluid.has("rho") && amount ? mass_of_rho(fluid, density) : fluid.non_negative("mass", 0.0);
+  std::int64_t others = 0;
+  if (counted > 0) others = scene.body_particles() + (scene.count > 0 ? scene.molecule_beads() : 0);
   scene.model = read_pair_model<D>({.fluid = fluid,
                                     .pairs = read_pairs(config, scene.species),
                                     .species = scene.species.size(),
                                     .density = density,
+                                    .others = static_cast<double>(others) / scene.fluid_volume(),
                                     .mass = scene.mass,
                                     .calibration = calibration});
+}
+
+// Particles that fill space take their room from the fluid's.
+template <int D>
+void make_room(SceneSettings<D>& scene) {
+  const auto reference = scene.model->reference_state(scene.mass);
+  const std::int64_t others = scene.body_particles() + scene.molecule_beads();
+  if (!reference || reference->spacing == 0.0 || scene.count >= 0 || others == 0) return;
+  scene.count = std::llround(reference->density * scene.fluid_volume()) - others;
+  if (scene.count < 1)
+    throw ConfigError(
+        fmt::format("no room is left for the fluid at fluid.density: bodies and molecules have {} "
+                    "particles, the space between the walls has "
+                    "room for {}: use a larger box",
+                    others, scene.count + others));
 }
 
 // A drag relative to the frame at rest screens flow beyond sqrt(eta/(n zeta_0)) and takes momentum away.
@@ -151,84 +170,6 @@ void read_drag(const Config& fluid, SceneSettings<D>& scene) {
         "sqrt(eta/(n zeta_0)), so it is refused where a wall or body moves or a force drives: "
         "use fluid.rattler_friction against rattlers, or insist with "
         "fluid.zeta_0_under_flow = true");
-}
-
-template <int D>
-std::vector<WallLayer> read_layers(const Config& wall, double thickness) {
-  std::vector<WallLayer> layers;
-  for (const Config& entry : wall.tables("layers")) {
-    WallLayer layer;
-    layer.depth = entry.non_negative("depth");
-    if (layer.depth > thickness)
-      entry.fail("depth",
-                 fmt::format("the layer lies outside the box: depth must be at most thickness = {}",
-                             thickness));
-    if (entry.has("count") == entry.has("spacing"))
-      entry.fail("count", "give count or spacing, one of them");
-    if (entry.has("count")) {
-      layer.count = entry.integer("count");
-      if (layer.count < 1) entry.fail("count", "must be positive");
-      constexpr int tangential = D - 1;
-      if (tangential > 1)
-        entry.fail("count", "a layer of this wall is a grid: give spacing instead");
-    } else {
-      layer.spacing = entry.positive("spacing");
-    }
-    layers.push_back(layer);
-  }
-  if (layers.empty())
-    wall.fail("layers",
-              "a wall needs at least one layer of frozen particles, e.g. layers = [{ depth = 0.0, "
-              "spacing = 0.2 }]: "
-              "without their friction nothing holds a massless fluid");
-  return layers;
-}
-
-template <int D>
-WallSettings<D> read_wall(const Config& entry, const SceneSettings<D>& scene) {
-  std::vector<std::string> sides;
-  for (int c = 0; c < D; ++c)
-    for (const char end : {'-', '+'}) sides.push_back(fmt::format("{}{}", "xyz"[c], end));
-  const std::string side = entry.choice("side", sides);
-  WallSettings<D> wall;
-  wall.axis = side[0] - 'x';
-  wall.high = side[1] == '+';
-  if (scene.box.is_periodic(wall.axis))
-    entry.fail("side", fmt::format("direction {} is periodic (box.periodic): a wall contradicts it",
-                                   side[0]));
-  if (scene.wall_at(wall.axis, wall.high) >= 0)
-    entry.fail("side", fmt::format("there are two walls at {}", side));
-  wall.thickness = entry.positive("thickness", 1.0);
-  if (wall.thickness >= 0.5 * scene.box.size[wall.axis])
-    entry.fail("thickness",
-               "the wall fills half of the box or more: nothing is left for the fluid");
-  wall.velocity = read_optional_vector<D>(entry, "velocity");
-  if (wall.velocity[wall.axis] != 0.0)
-    entry.fail("velocity",
-               fmt::format("a wall moves along itself: component {} must be 0", side[0]));
-  for (int c = 0; c < D; ++c)
-    if (wall.velocity[c] != 0.0 && !scene.box.is_periodic(c))
-      entry.fail(
-          "velocity",
-          fmt::format("a wall that moves in direction {} needs that direction periodic", "xyz"[c]));
-  wall.layers = read_layers<D>(entry, wall.thickness);
-  wall.species =
-      species_index(scene.species, entry, "species", entry.text("species", scene.species[0].name));
-  wall.stiffness = entry.positive("stiffness", wall.stiffness);
-  return wall;
-}
-
-template <int D>
-void read_walls(const Config& config, SceneSettings<D>& scene) {
-  for (const Config& entry : config.tables("wall")) scene.walls.push_back(read_wall(entry, scene));
-  for (int c = 0; c < D; ++c)
-    for (const bool high : {false, true})
-      if (!scene.box.is_periodic(c) && scene.wall_at(c, high) < 0)
-        config.table("box").fail(
-            "periodic",
-            fmt::format("direction {} is bounded but has no wall at its {} end: add "
-                        "[[wall]] with side = \"{}{}\", or make it periodic",
-                        "xyz"[c], high ? "upper" : "lower", "xyz"[c], high ? '+' : '-'));
 }
 
 template <int D>
@@ -319,6 +260,13 @@ std::int64_t SceneSettings<D>::molecule_beads() const {
 }
 
 template <int D>
+std::int64_t SceneSettings<D>::body_particles() const {
+  std::int64_t particles = 0;
+  for (const auto& b : bodies) particles += b.bodies() * static_cast<std::int64_t>(b.shape.size());
+  return particles;
+}
+
+template <int D>
 int SceneSettings<D>::wall_at(int axis, bool high) const {
   for (std::size_t w = 0; w < walls.size(); ++w)
     if (walls[w].axis == axis && walls[w].high == high) return static_cast<int>(w);
@@ -368,6 +316,8 @@ SceneSettings<D> read_scene_settings(const Config& config,
   }
   read_molecules(config, scene);
   read_fluid(config, calibration, scene);
+  complete_walls(config, scene);
+  make_room(scene);
   read_drive(config, scene);
   read_shear(config, scene);
   read_drag(config.table("fluid"), scene);

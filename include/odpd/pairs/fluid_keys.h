@@ -22,6 +22,8 @@ struct FluidKeys {
   std::vector<Pair> pairs;
   std::size_t species = 1;  ///< how many
   double density = 0.0;  ///< of the fluid's particles (1/length^d); 0: a start file tells it later
+  /// Of bodies and molecules, where [fluid] tells a number and not a density. What fills space has room for all together.
+  double others = 0.0;
   double mass = 0.0;
   /// Contents of the file that fluid.calibration names, where it was read.
   std::optional<Calibration> calibration;

@@ -64,8 +64,8 @@ struct SceneSettings {
   std::vector<SpeciesSettings> species{SpeciesSettings{}};
   /// Of all pairs of species; a library user may give one of their own.
   std::shared_ptr<const PairModel<D>> model = default_pair_model<D>();
-  std::int64_t count = -1;     ///< fluid particles; -1: by density
-  double density = 4.0;        ///< fluid particles per volume between the walls
+  std::int64_t count = -1;  ///< fluid particles; -1: by density
+  double density = 4.0;     ///< fluid particles per volume between the walls; not used with count
   double start_density = 0.0;  ///< what the start file must hold, where there is no count; 0: any
   double mass = 0.0;           ///< of every fluid particle
   double zeta_0 = 0.0;         ///< uniform drag on every fluid particle (mass/time)
@@ -89,6 +89,7 @@ struct SceneSettings {
   std::int64_t relax_sweeps = 100;  ///< of overlap removal before the run
 
   std::int64_t molecule_beads() const;  ///< of all molecules
+  std::int64_t body_particles() const;  ///< of all bodies
   /// Something drives a flow: a force, a moving wall, a body that is moved or pushed, shear.
   bool driven() const;
   /// Walls, or bodies of known motion, hold the fluid and take up a net force.
