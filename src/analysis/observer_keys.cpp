@@ -98,10 +98,10 @@ double read_r_max(const ObserverEntry<D>& entry) {
 ControlKeys read_control(const Config& config, double window, double dt) {
   ControlKeys control;
   if (!config.boolean("control", false)) return control;
-  control.every = config.positive_integer("control_every", 1);
+  control.every = window > 0.0 ? config.positive_integer("control_every", 1) : 1;
   control.tolerance = config.positive("control_tolerance", control.tolerance);
   if (control.tolerance >= 1.0) config.fail("control_tolerance", "must be less than 1");
-  if (static_cast<double>(control.every) * dt > 0.25 * window)
+  if (window > 0.0 && static_cast<double>(control.every) * dt > 0.25 * window)
     config.fail("control_every", "the window must hold four controlled steps");
   return control;
 }

@@ -166,7 +166,9 @@ Viscosity<D>::Viscosity(ObserverSettings settings, const ViscositySettings& visc
   if (kind_.kind == Kind::sheared)
     parts_.push_back(std::make_unique<WallForce<D>>(
         ObserverSettings{.kind = "wall-force", .name = "wall", .every = every}, scene));
-  if (kind_.kind == Kind::sheared || kind_.kind == Kind::images)
+  if (kind_.kind == Kind::images && viscosity.control.every > 0)
+    controlled_.emplace(3);
+  else if (kind_.kind == Kind::sheared || kind_.kind == Kind::images)
     parts_.push_back(std::make_unique<Stress<D>>(
         ObserverSettings{.kind = "stress", .name = "stress", .every = every}, StressBins{}, scene));
   if (kind_.kind == Kind::at_rest)
@@ -212,13 +214,16 @@ std::unique_ptr<Observer<D>> Viscosity<D>::make(const ObserverEntry<D>& entry) {
       config.fail("every", "must be 1: the stress is integrated over every step");
     require_two_steps(config, v.window, entry.clock.dt);
     v.control = read_control(config, v.window, entry.clock.dt);
-    if (v.control.every > 0 &&
-        (entry.scene.settings().mass > 0.0 || (entry.in_time && !entry.two_stages)))
-      config.fail("control",
-                  "knows what the noise does to particles without mass, in schemes of two stages: "
-                  "set fluid.mass = 0 and the "
-                  "integrator 'trapezoidal' or 'midpoint', or leave control out");
+  } else if (kind.kind == ViscosityScene::Kind::images) {
+    v.control = read_control(config);
   }
+  if (v.control.every > 0 &&
+      (entry.scene.settings().mass > 0.0 || (entry.in_time && !entry.two_stages) ||
+       entry.scene.largest_kT() == 0.0))
+    config.fail("control",
+                "knows what the noise does to particles without mass, in schemes of two stages: "
+                "set fluid.mass = 0, kT > 0 and the "
+                "integrator 'trapezoidal' or 'midpoint', or leave control out");
   return std::make_unique<Viscosity<D>>(std::move(settings), v, entry.scene, entry.clock.dt);
 }
 
@@ -226,6 +231,18 @@ template <int D>
 void Viscosity<D>::measure(const Clock& clock, const Particles<D>& particles,
                            const StepRecord<D>& record) {
   for (auto& part : parts_) part->measure(clock, particles, record);
+  if (controlled_) {
+    const HelfandControl control =
+        shear_control(particles, record, kind_.component, kind_.axis, control_tolerance_);
+    const std::vector<double> stress = stress_of(scene_, particles, record, StressBins{});
+    double plain = 0.0;
+    for (std::size_t part = 0; part < stress_parts; ++part)
+      plain += stress[(part * D + index(kind_.axis)) * D + index(kind_.component)];
+    const double volume = scene_.fluid_volume(), rate = scene_.box().shear->rate;
+    const double made = control.made[0] / (volume * record.dt);
+    row_ = {plain / rate, (plain - made) / rate, control.response[0] / volume};
+    controlled_->add(row_);
+  }
   if (!growth_) return;
   HelfandControl control;
   if (growth_->control_is_due()) control = helfand_control(particles, record, control_tolerance_);
@@ -278,6 +295,14 @@ std::vector<Scalar> Viscosity<D>::routes(Results& results) const {
     }
     return {helfand("helfand", growth_->chi(0))};
   }
+  if (controlled_) {
+    const auto column = [&](const char* what, std::size_t k) {
+      return Scalar{this->named(what), controlled_->mean(k), controlled_->standard_error(k)};
+    };
+    results.scalars.push_back(column("plain", 0));
+    results.scalars.push_back(column("frozen", 2));
+    return {column("stress", 1)};
+  }
   Results parts;
   for (const auto& part : parts_) part->add_results(parts);
   results.notes.insert(results.notes.end(), parts.notes.begin(), parts.notes.end());
@@ -328,6 +353,7 @@ std::vector<std::string> Viscosity<D>::series_columns() const {
   for (const auto& part : parts_)
     for (const std::string& column : part->series_columns())
       columns.push_back(part->settings().name + "_" + column);
+  if (controlled_) return {"plain", "stress", "frozen"};
   if (growth_)
     for (std::size_t k = 0; k < growth_->integral().size(); ++k)
       columns.push_back(fmt::format("integral_{}", k));
@@ -337,6 +363,7 @@ std::vector<std::string> Viscosity<D>::series_columns() const {
 template <int D>
 std::vector<double> Viscosity<D>::series_row() const {
   if (growth_) return growth_->integral();
+  if (controlled_) return row_;
   std::vector<double> row;
   for (const auto& part : parts_) {
     const std::vector<double> values = part->series_row();
@@ -352,12 +379,14 @@ void Viscosity<D>::save(StateWriter& out) const {
     part->save(prefixed);
   }
   if (growth_) growth_->save(out);
+  if (controlled_) controlled_->save(out, "controlled");
 }
 
 template <int D>
 void Viscosity<D>::load(const StateReader& in) {
   for (auto& part : parts_) part->load(PrefixedReader(in, part->settings().name + "/"));
   if (growth_) growth_->load(in);
+  if (controlled_) controlled_->load(in, "controlled");
 }
 
 template ViscosityScene viscosity_scene<2>(const Scene<2>&);

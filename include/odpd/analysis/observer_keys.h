@@ -39,8 +39,9 @@ struct ControlKeys {
   double tolerance = 0.01;  ///< relative, of these solves
 };
 
-/// `control`, `control_every`, `control_tolerance`; a window must hold four controlled steps.
-ControlKeys read_control(const Config& config, double window, double dt);
+/// `control`, `control_every`, `control_tolerance`; a window must hold four controlled steps. Without a window (0) each sample has
+/// control, and there is no `control_every`.
+ControlKeys read_control(const Config& config, double window = 0.0, double dt = 0.0);
 /// A note for results: what control may miss where a scene has bonds.
 std::string control_with_bonds(const std::string& observer);
 

@@ -7,11 +7,16 @@
 //   <name>.sine     amplitude under a sinusoidal force, n F L^2/(4 pi^2 k^2 A), k waves in L     (profile.h)
 //   <name>.helfand  growth of the integrated stress in a fully periodic box at rest              (helfand.h, mode_growth.h)
 //
+// The stress between sliding images fluctuates by what the noise makes of it, which has no mean; with `control` that is subtracted
+// (shear_control of helfand.h; without it: <name>.plain). A shear stress is that of the force along the flow across the gradient, S_ba of a
+// flow along a with its gradient along b, which with friction across lines of centres is not S_ab.
+//
 // `viscosity` (`<name>.viscosity` under another name) is the one of smallest standard error; a note says which. Errors of
 // quotients take numerator and denominator as independent.
 #include <memory>
 #include <optional>
 
+#include "odpd/analysis/block_average.h"
 #include "odpd/analysis/mode_growth.h"
 #include "odpd/analysis/observer_keys.h"
 #include "odpd/analysis/profile.h"
@@ -40,7 +45,7 @@ ViscosityScene viscosity_scene(const Scene<D>& scene);
 struct ViscositySettings {
   std::int64_t bins = 20;               ///< of the profile
   double window = 0.5, fit_from = 0.2;  ///< of helfand (time)
-  ControlKeys control = {};             ///< of helfand
+  ControlKeys control = {};             ///< of helfand, and of sliding images
 };
 
 template <int D>
@@ -51,7 +56,10 @@ class Viscosity : public Observer<D> {
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   /// The integrated stress is that up to the step's end.
   double moment() const override { return growth_ ? 1.0 : 0.5; }
-  double solves() const override { return growth_ ? growth_->solves() : 0.0; }
+  double solves() const override {
+    if (growth_) return growth_->solves();
+    return controlled_ ? 1.0 / static_cast<double>(this->settings().every) : 0.0;
+  }
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
@@ -71,6 +79,9 @@ class Viscosity : public Observer<D> {
   std::vector<std::unique_ptr<Observer<D>>>
       parts_;                         // profile, wall-force, stress: what the routes need
   std::optional<ModeGrowth> growth_;  // of the integrated stress
+  // Stress over rate as it is, without what the noise makes of it, and eta_0; of the last sample.
+  std::optional<BlockAverage> controlled_;
+  std::vector<double> row_;
   double control_tolerance_;
 };
 

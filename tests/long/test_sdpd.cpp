@@ -1,0 +1,65 @@
+// An SDPD fluid at equilibrium, to the accuracy of its reference values.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "support/sdpd_fluid.h"
+
+namespace odpd {
+namespace {
+
+using support::sdpd_144;
+using support::sdpd_144_without;
+using support::sdpd_400;
+using support::sdpd_results;
+using support::SdpdReference;
+
+void expect_reference(const Results& results, const char* name, double mean, double error,
+                      double most) {
+  const Scalar* scalar = results.find(name);
+  ASSERT_NE(scalar, nullptr);
+  std::printf("%-20s %.6f(%.6f), reference %.6f(%.6f)\n", name, scalar->mean,
+              scalar->standard_error, mean, error);
+  EXPECT_LT(scalar->standard_error, most * mean) << name;
+  EXPECT_NEAR(scalar->mean, mean, 3.0 * std::hypot(scalar->standard_error, error)) << name;
+}
+
+TEST(SdpdReferences, MonteCarlo) {
+  for (const SdpdReference& fluid : {sdpd_400, sdpd_144, sdpd_144_without}) {
+    const Results r = sdpd_results(fluid, {.equilibrate = 500.0, .duration = 20000.0});
+    expect_reference(r, "energy_per_particle", fluid.energy, fluid.energy_error, 0.004);
+    expect_reference(r, "pressure", fluid.pressure, fluid.pressure_error,
+                     fluid.background > 0.0 ? 5e-5 : 2e-3);
+    EXPECT_NEAR(r.find("config_temperature")->mean, 0.01, 1e-4);
+  }
+}
+
+// K dt/eta = 0.2. Standard error of U: 0.15 %, of the temperature: 0.2 %.
+Results sdpd_motion_at_length(const char* integrator) {
+  return sdpd_results(
+      sdpd_144,
+      {.integrator = integrator, .dt = 0.2, .equilibrate = 300.0, .duration = 20000.0, .every = 4});
+}
+
+TEST(SdpdReferences, TrapezoidalIsWithinHalfAPercent) {
+  const Results r = sdpd_motion_at_length("trapezoidal");
+  const double energy = r.find("energy_per_particle")->mean,
+               temperature = r.find("config_temperature")->mean;
+  std::printf("trapezoidal: U = %.6f(%.6f), T = %.5f kT\n", energy,
+              r.find("energy_per_particle")->standard_error, temperature / 0.01);
+  EXPECT_NEAR(energy, sdpd_144.energy, 0.005 * sdpd_144.energy);
+  EXPECT_NEAR(temperature, 0.01, 1e-4);
+}
+
+TEST(SdpdReferences, EulerIsNotAndTheTestSeesThat) {
+  const Results r = sdpd_motion_at_length("euler");
+  const double energy = r.find("energy_per_particle")->mean;
+  std::printf("euler: U = %.6f(%.6f), T = %.5f kT\n", energy,
+              r.find("energy_per_particle")->standard_error,
+              r.find("config_temperature")->mean / 0.01);
+  EXPECT_LT(energy, (1.0 - 0.02) * sdpd_144.energy);
+}
+
+}  // namespace
+}  // namespace odpd
