@@ -316,7 +316,7 @@ void Profile<D>::add_linear(const FittedBins& fitted, const std::optional<WallSp
                              0.5 * h * std::abs(expected / (slope * slope)) * error});
   if (!fitted.found) return;
   results.notes.push_back(
-      fmt::format("{}: H_eff = {} is the distance between the wall surfaces ; slope_ratio "
+      fmt::format("{}: H_eff = {} is the distance between the wall surfaces; slope_ratio "
                   "compares with (U_high - U_low)/H_eff",
                   this->settings().name, h));
   chart.curves.push_back({.title = "no slip at the surfaces",

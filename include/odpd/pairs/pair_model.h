@@ -33,8 +33,8 @@ struct ModelParameters {
 /// A fluid of densities as its model means it, where integrals over pairs do not tell (pairs/pair_moments.h).
 struct ReferenceState {
   double density = 0.0;  ///< d of its particles
-  double spacing =
-      0.0;  ///< density^(-1/d) where particles fill space, so that walls and bodies take room as fluid does; else 0
+  /// density^(-1/d) where particles fill space, those of walls and bodies as the fluid's; else 0.
+  double spacing = 0.0;
   double pressure = 0.0;      ///< without n kT (energy/length^d)
   double bulk_modulus = 0.0;  ///< n dp/dn, without n kT (energy/length^d)
   // Of explicit forces (time); infinite where nothing repels.
