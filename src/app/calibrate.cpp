@@ -14,7 +14,7 @@
 #include "odpd/core/log.h"
 #include "odpd/core/timer.h"
 #include "odpd/pairs/dpd.h"
-#include "odpd/pairs/kinetic_theory.h"
+#include "odpd/pairs/sdpd.h"
 
 namespace odpd {
 
@@ -35,17 +35,32 @@ Config case_to_calibrate(const CalibrateOptions& options) {
   return open_case(options.case_path, overrides);
 }
 
-// Throws ConfigError for what the formulas and this measuring scene do not cover.
-template <int D>
-void check_fluid(const Config& fluid, const SceneSettings<D>& s, const DpdFluid& dpd) {
-  if (dpd.p.kT == 0.0)
-    fluid.fail("kT",
-               "a fluid at kT = 0 has no viscosity of its own (it rests in whatever "
-               "structure it has): give kT > 0");
+// What the measurements vary and what they keep. Throws ConfigError for what the formulas and this measuring scene do not cover.
+std::shared_ptr<const CalibratedModel> calibrated(const Config& fluid, const DpdFluid& dpd,
+                                                  int dimension, double density) {
   if (dpd.asked.alpha)
     fluid.fail("alpha", "sets a by gamma, which is being looked for: give a instead");
   if (dpd.p.gamma_perp > 0.0)
     fluid.fail("gamma_perp", "calibration changes gamma alone: leave it out");
+  return calibrated_dpd(dpd.p, dimension, density);
+}
+
+template <int D>
+std::shared_ptr<const CalibratedModel> calibrated(const Config& fluid, const SdpdModel<D>& sdpd) {
+  const SdpdFriction& f = sdpd.friction();
+  if (f.A != 0.0 && std::abs(f.A - f.B) > 1e-12 * f.A)
+    fluid.fail("zeta_b",
+               "calibration changes eta, and what bulk viscosity that leaves is not measured: give "
+               "fluid.form");
+  return calibrated_sdpd(sdpd.fluid(), f, D);
+}
+
+template <int D>
+void check_fluid(const Config& fluid, const SceneSettings<D>& s) {
+  if (s.model->thermal() == false)
+    fluid.fail("kT",
+               "a fluid at kT = 0 has no viscosity of its own (it rests in whatever "
+               "structure it has): give kT > 0");
   if (s.zeta_0 > 0.0)
     log_warning("fluid.zeta_0 is left out of the measurement: it would take momentum away");
   if (s.species.size() > 1)
@@ -60,38 +75,41 @@ CalibrationRecord read_record(const CalibrateOptions& options, const Config& con
   const SceneSettings<D>& s = simulation.scene().settings();
   const Config fluid = config.table("fluid");
   const DpdFluid* dpd = dpd_fluid(*s.model);
-  if (dpd == nullptr)
+  const auto* sdpd = dynamic_cast<const SdpdModel<D>*>(s.model.get());
+  if (dpd == nullptr && sdpd == nullptr)
     fluid.fail("model",
-               fmt::format("odpd calibrate finds the friction of a fluid of model = \"dpd\", this "
-                           "one's is \"{}\": measure its viscosity in a case with an observer of "
-                           "kind = \"viscosity\"",
+               fmt::format("odpd calibrate finds the friction of a fluid of model = \"dpd\" or "
+                           "\"sdpd\", this one's is \"{}\": measure its viscosity in a case with "
+                           "an observer of kind = \"viscosity\"",
                            s.model->name()));
-  check_fluid(fluid, s, *dpd);
+  check_fluid(fluid, s);
+  // The nominal density, which a count or a start file gives by its number of particles.
+  const double density =
+      s.count >= 0 || s.start == StartKind::file
+          ? static_cast<double>(simulation.scene().particles().free_count()) / s.fluid_volume()
+          : s.density;
   CalibrationRecord record;
+  MeasuredFluid& m = record.fluid;
+  m.model = dpd != nullptr ? calibrated(fluid, *dpd, D, density) : calibrated(fluid, *sdpd);
   record.relative_error = options.relative_error;
-  record.eta = options.eta > 0.0 ? options.eta : dpd->asked.eta.value_or(0.0);
+  const double asked = dpd != nullptr ? dpd->asked.eta.value_or(0.0) : m.model->friction();
+  record.eta = options.eta > 0.0 ? options.eta : asked;
   if (options.measure_only) {
     record.eta = 0.0;
   } else if (record.eta == 0.0) {
     fluid.fail("eta", "no viscosity is asked for: give --eta, or fluid.eta, or --measure-only");
   }
-  MeasuredFluid& m = record.fluid;
   m.dimension = D;
-  // The nominal density, which a count or a start file gives by its number of particles.
-  m.density =
-      s.count >= 0 || s.start == StartKind::file
-          ? static_cast<double>(simulation.scene().particles().free_count()) / s.fluid_volume()
-          : s.density;
+  m.density = density;
   m.mass = s.mass;
-  m.dpd = dpd->p;
   m.shear_rate = options.shear_rate;
   m.seed = s.seed;
-  m.particles =
-      options.particles > 0 ? options.particles : default_particles(D, m.density, m.dpd.cutoff);
-  if (m.box_edge() < 3.0 * m.dpd.cutoff)
+  m.particles = options.particles > 0 ? options.particles
+                                      : default_particles(D, m.density, m.model->cutoff());
+  if (m.box_edge() < 3.0 * m.model->cutoff())
     throw ConfigError(fmt::format(
         "--particles: {} fill a box with an edge of {:.3g}: three cutoffs ({:.3g}) are needed",
-        m.particles, m.box_edge(), 3.0 * m.dpd.cutoff));
+        m.particles, m.box_edge(), 3.0 * m.model->cutoff()));
   return record;
 }
 
@@ -147,33 +165,24 @@ class Calibrator {
   // What is still to be measured; of --measure-only that is one friction.
   std::optional<MeasurementPlan> next() const {
     const MeasuredFluid& f = record_.fluid;
-    const double affine = kinetic_eta();
     if (record_.eta > 0.0)
-      return next_measurement(record_.measurements, record_.eta, f.dpd.gamma * record_.eta / affine,
+      return next_measurement(record_.measurements, record_.eta, f.model->guess(record_.eta),
                               record_.relative_error, f.linear());
     for (const ViscosityMeasurement& m : record_.measurements)
       if (m.counts() && m.relative_error() <= record_.relative_error) return std::nullopt;
-    return MeasurementPlan{f.dpd.gamma, record_.relative_error};
+    return MeasurementPlan{f.model->friction(), record_.relative_error};
   }
 
-  template <int D>
-  double kinetic_eta_in() const {
-    const MeasuredFluid& f = record_.fluid;
-    return kinetic_theory<D>(pair_moments(*make_dpd<D>(f.dpd), 1), {1.0}, f.density, f.mass)
-        .eta_friction;
-  }
+  std::string friction() const { return record_.fluid.model->label(); }
 
-  double kinetic_eta() const {
-    return record_.fluid.dimension == 2 ? kinetic_eta_in<2>() : kinetic_eta_in<3>();
-  }
-
-  static void head() {
-    fmt::print("  {:>12} {:>24} {:>10} {:>10} {:>10} {:>9}\n", "gamma", "eta", "rate", "dt", "time",
-               "seconds");
+  void head() const {
+    fmt::print("  {:>12} {:>24} {:>10} {:>10} {:>10} {:>9}\n", friction(), "eta", "rate", "dt",
+               "time", "seconds");
   }
 
   bool measure(double gamma, double rate, double relative_error, bool doubled = false) {
-    log_info(fmt::format("measuring at gamma = {:.6g} to {:.2g} %", gamma, 100.0 * relative_error));
+    log_info(fmt::format("measuring at {} = {:.6g} to {:.2g} %", friction(), gamma,
+                         100.0 * relative_error));
     const Stopwatch watch;
     const ViscosityRun run{.gamma = gamma,
                            .shear_rate = rate,
@@ -229,15 +238,15 @@ std::string lines_to_paste(const CalibrationRecord& r) {
   const MeasuredFluid& f = r.fluid;
   const double rate = f.shear_rate > 0.0 ? f.shear_rate : default_shear_rate(f, r.result->gamma);
   return fmt::format(
-      "\n[fluid]\n# measured: eta = {} at shear rate {:.4g}\ndensity = {}\nmass = {}\nkT = {}\n"
-      "cutoff = {}\na = {}\ns_bar = {}\ns = {}\ngamma = {:.6g}\n{}",
-      with_error(r.eta, r.eta * r.result->relative_error), rate, f.density, f.mass, f.dpd.kT,
-      f.dpd.cutoff, f.dpd.a, f.dpd.s_bar, f.dpd.s, r.result->gamma, rattler_line(f.dpd));
+      "\n[fluid]\n# measured: eta = {} at shear rate {:.4g}\ndensity = {}\nmass = {}\n{}{} = "
+      "{:.6g}\n",
+      with_error(r.eta, r.eta * r.result->relative_error), rate, f.density, f.mass, f.model->keys(),
+      f.model->key(), r.result->gamma);
 }
 
 int conclude_calibration(CalibrationRecord& record, Calibrator& calibrator, const fs::path& file) {
   bool done = calibrator.search();
-  double gamma = record.fluid.dpd.gamma, eta = 0.0, error = 0.0;
+  double gamma = record.fluid.model->friction(), eta = 0.0, error = 0.0;
   if (done && record.eta > 0.0) {
     record.result = estimate_friction(record.measurements, record.eta, record.fluid.linear());
     gamma = record.result->gamma;
@@ -257,10 +266,11 @@ int conclude_calibration(CalibrationRecord& record, Calibrator& calibrator, cons
                     100.0 * record.relative_error, file.string()),
         4);
   fmt::print("\n{}", thinning_text(record, gamma, eta, error));
+  const std::string key = record.fluid.model->label();
   if (record.eta == 0.0) {
-    fmt::print("gamma = {:.6g}: eta = {}\n", gamma, with_error(eta, error));
+    fmt::print("{} = {:.6g}: eta = {}\n", key, gamma, with_error(eta, error));
   } else {
-    fmt::print("gamma = {} gives eta = {}\n{}", with_error(gamma, record.result->gamma_error()),
+    fmt::print("{} = {} gives eta = {}\n{}", key, with_error(gamma, record.result->gamma_error()),
                with_error(eta, error), lines_to_paste(record));
   }
   fmt::print("\nEverything is in {}\n", file.string());

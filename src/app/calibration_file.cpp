@@ -18,27 +18,20 @@ namespace {
 std::vector<std::pair<std::string, double>> inputs_of(const CalibrationRecord& r) {
   const MeasuredFluid& f = r.fluid;
   std::vector<std::pair<std::string, double>> inputs{
-      {"dimension", f.dimension},
-      {"density", f.density},
-      {"mass", f.mass},
-      {"kT", f.dpd.kT},
-      {"cutoff", f.dpd.cutoff},
-      {"a", f.dpd.a},
-      {"s_bar", f.dpd.s_bar},
-      {"s", f.dpd.s},
-      {"rattler_gamma", f.dpd.gamma_far},
-      {"rattler_cutoff", f.dpd.gamma_far > 0.0 ? f.dpd.cutoff_far : 0.0},
-      {"eta", r.eta},
-      {"shear_rate", f.shear_rate},
-      {"particles", static_cast<double>(f.particles)},
-      {"seed", static_cast<double>(f.seed)}};
-  if (r.eta == 0.0) inputs.emplace_back("gamma", f.dpd.gamma);
+      {"dimension", f.dimension}, {"density", f.density}, {"mass", f.mass}};
+  const auto of_model = f.model->inputs();
+  inputs.insert(inputs.end(), of_model.begin(), of_model.end());
+  inputs.insert(inputs.end(), {{"eta", r.eta},
+                               {"shear_rate", f.shear_rate},
+                               {"particles", static_cast<double>(f.particles)},
+                               {"seed", static_cast<double>(f.seed)}});
+  if (r.eta == 0.0) inputs.emplace_back(f.model->label(), f.model->friction());
   return inputs;
 }
 
-JsonObject json_of_measurement(const ViscosityMeasurement& m) {
+JsonObject json_of_measurement(const std::string& friction, const ViscosityMeasurement& m) {
   return JsonObject()
-      .set("gamma", m.gamma)
+      .set(friction, m.gamma)
       .set("eta", m.eta)
       .set("eta_stderr", m.error)
       .set("shear_rate", m.shear_rate)
@@ -52,11 +45,13 @@ JsonObject json_of_measurement(const ViscosityMeasurement& m) {
 }  // namespace
 
 void write_calibration(const std::filesystem::path& file, const CalibrationRecord& record) {
+  const std::string friction = record.fluid.model->label();
   JsonObject inputs;
   for (const auto& [name, value] : inputs_of(record)) inputs.set(name, value);
+  if (const std::string text = record.fluid.model->text(); !text.empty()) inputs.set("fluid", text);
   std::vector<JsonObject> measurements;
   for (const ViscosityMeasurement& m : record.measurements)
-    measurements.push_back(json_of_measurement(m));
+    measurements.push_back(json_of_measurement(friction, m));
   JsonObject json;
   json.set("program", "odpd " ODPD_VERSION)
       .set("inputs", inputs)
@@ -66,8 +61,8 @@ void write_calibration(const std::filesystem::path& file, const CalibrationRecor
   if (const auto& result = record.result) {
     const double eta = record.eta;
     json.set("result", JsonObject()
-                           .set("gamma", result->gamma)
-                           .set("gamma_stderr", result->gamma_error())
+                           .set(friction, result->gamma)
+                           .set(friction + "_stderr", result->gamma_error())
                            .set("eta", eta)
                            .set("eta_stderr", eta * result->relative_error)
                            .set("exponent", result->exponent));
@@ -82,12 +77,16 @@ std::string continue_calibration(const std::filesystem::path& file, CalibrationR
   for (const auto& [name, value] : inputs)
     if (const double before = json.number({"inputs", name}); before != value)
       return fmt::format("{} was {} and is {}", name, before, value);
-  if (json.keys({"inputs"}).size() != inputs.size()) return "it was for another purpose";
+  const std::string text = record.fluid.model->text();
+  if (const std::string before = json.text({"inputs", "fluid"}); before != text)
+    return fmt::format("the fluid was {} and is {}", before, text);
+  if (json.keys({"inputs"}).size() != inputs.size() + (text.empty() ? 0 : 1))
+    return "it was for another purpose";
   for (std::size_t k = 0; k < json.count({"measurements"}); ++k) {
     const auto number = [&](const char* name) {
       return json.number({"measurements", std::to_string(k), name});
     };
-    record.measurements.push_back({.gamma = number("gamma"),
+    record.measurements.push_back({.gamma = number(record.fluid.model->label().c_str()),
                                    .eta = number("eta"),
                                    .error = number("eta_stderr"),
                                    .shear_rate = number("shear_rate"),

@@ -14,6 +14,7 @@
 #include "odpd/core/index.h"
 #include "odpd/pairs/dpd.h"
 #include "odpd/pairs/kinetic_theory.h"
+#include "odpd/pairs/sdpd_expectation.h"
 
 namespace odpd {
 
@@ -69,6 +70,36 @@ Named asked_values(const PhysicalInputs& in) {
   add("alpha", in.alpha);
   add("kappa_inverse", in.kappa_inverse);
   return values;
+}
+
+template <int D>
+const SdpdModel<D>* sdpd_fluid(const PairModel<D>& model) {
+  return dynamic_cast<const SdpdModel<D>*>(&model);
+}
+
+// What an SDPD fluid like this one was measured to have.
+template <int D>
+std::optional<ExpectedViscosity> expectation(const PairModel<D>& model) {
+  const SdpdModel<D>* sdpd = sdpd_fluid(model);
+  if (sdpd == nullptr) return std::nullopt;
+  return expected_viscosity(sdpd->fluid(), sdpd->friction(), D);
+}
+
+template <int D>
+std::string expectation_text(const PairModel<D>& model) {
+  const SdpdModel<D>* sdpd = sdpd_fluid(model);
+  if (sdpd == nullptr) return {};
+  const auto e = expectation(model);
+  if (!e)
+    return fmt::format(
+        "  {:<15} eta: no fluid like this one is in the table of docs/density-fluids.md\n",
+        "expected");
+  const double asked = sdpd->friction().eta(D);
+  return fmt::format(
+      "  {:<15} eta = {}: {:.3f} of what is asked for, as support = {}, kappa = {}, Gamma = {} has "
+      "(docs/density-fluids.md)\n",
+      "expected", with_error(e->ratio * asked, e->standard_error * asked), e->ratio, e->support,
+      e->kappa, e->Gamma);
 }
 
 template <int D>
@@ -207,6 +238,7 @@ std::string fluid_text(const Scene<D>& scene, const Results& results) {
                        c.file);
   }
   out += line("kinetic theory", kinetic_values(scene, k));
+  out += expectation_text(model);
   const Scalar* measured = measured_viscosity(results);
   out += fmt::format(
       "  {:<15} {}\n", "measured",
@@ -234,6 +266,15 @@ JsonObject fluid_json(const Scene<D>& scene, const Results& results) {
                                   .set("gamma_stderr", c->gamma_error)
                                   .set("eta", c->eta)
                                   .set("eta_stderr", c->eta_error));
+  }
+  if (const auto e = expectation(model)) {
+    const double asked = sdpd_fluid(model)->friction().eta(D);
+    json.set("viscosity_expected", JsonObject()
+                                       .set("mean", e->ratio * asked)
+                                       .set("stderr", e->standard_error * asked)
+                                       .set("support", e->support)
+                                       .set("kappa", e->kappa)
+                                       .set("Gamma", e->Gamma));
   }
   json.set("kinetic_theory", json_of(kinetic_values(scene, k)));
   json.set("groups", json_of(group_values(scene, k, results)));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "odpd/core/log.h"
+#include "odpd/pairs/calibration.h"
 #include "odpd/pairs/density_writer.h"
 #include "odpd/pairs/friction.h"
 
@@ -147,6 +148,11 @@ void refuse_dpd_keys(const Config& keys) {
       keys.fail(key,
                 "is a parameter of DPD; fluid.model = \"sdpd\" is told by what it shall have: eta, "
                 "bulk_modulus or sound_speed, and support in place of a cutoff");
+  if (names_calibration(keys))
+    keys.fail(
+        "calibration",
+        "is of fluid.model = \"dpd\"; here fluid.eta takes the value that odpd calibrate finds "
+        "for the viscosity wanted");
 }
 
 SmoothingKernel::Shape read_kernel(const Config& fluid) {

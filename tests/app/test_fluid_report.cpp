@@ -3,6 +3,7 @@
 
 #include "odpd/app/fluid_report.h"
 #include "odpd/pairs/dpd.h"
+#include "odpd/pairs/sdpd.h"
 #include "support/pair_functions.h"
 
 namespace {
@@ -43,6 +44,35 @@ TEST(FluidReport, OfAModelOfOnesOwn) {
   const std::string json = odpd::fluid_json(scene, Results{}).text();
   expect_words(json, {"\"function\"", "\"step_limit\": 0.0145"});
   EXPECT_EQ(json.find("asked_for"), std::string::npos);
+}
+
+SceneSettings<2> sdpd_box(double background, double support) {
+  const odpd::SdpdParameters p{.state = {.d_0 = 4.0, .modulus = 400.0, .background = background},
+                               .support = 0.5 * support,
+                               .kT = 1.0};
+  SceneSettings<2> s = box_of(std::make_shared<const odpd::SdpdModel<2>>(
+      p, 1, std::vector{odpd::SdpdFriction::central(2.0, 2)}));
+  s.density = 4.0;
+  return s;
+}
+
+// kappa = 100. What is expected is 0.98 of eta at Gamma = 100 and 0.84 without background pressure; of Gamma = 60 nobody knows.
+TEST(FluidReport, OfSdpdSaysWhatTheTableExpects) {
+  const Scene<2> scene(sdpd_box(400.0, 3.0));
+  expect_words(
+      odpd::fluid_text(scene, Results{}),
+      {"asked for", "eta = 2 ", "expected", "eta = 1.96", "support = 3, kappa = 100, Gamma = 100"});
+  expect_words(odpd::fluid_json(scene, Results{}).text(),
+               {"\"viscosity_expected\"", "\"mean\": 1.96"});
+  const Scene<2> soft(sdpd_box(0.0, 3.2));
+  expect_words(odpd::fluid_text(soft, Results{}), {"eta = 1.6", "Gamma = 0"});
+  for (const auto& [background, support] :
+       {std::pair{240.0, 2.8}, std::pair{400.0, 3.5}, std::pair{4000.0, 3.0}}) {
+    const Scene<2> unknown(sdpd_box(background, support));
+    expect_words(odpd::fluid_text(unknown, Results{}), {"expected", "no fluid like this one"});
+    EXPECT_EQ(odpd::fluid_json(unknown, Results{}).text().find("viscosity_expected"),
+              std::string::npos);
+  }
 }
 
 TEST(FluidReport, WhatDivergesIsUndefined) {

@@ -14,7 +14,7 @@ namespace odpd {
 
 struct CalibrationRecord {
   MeasuredFluid fluid;
-  double eta = 0.0;              ///< asked for; 0: only measure, at fluid.dpd.gamma
+  double eta = 0.0;              ///< asked for; 0: only measure, at the friction of the case
   double relative_error = 0.02;  ///< asked for
   std::vector<ViscosityMeasurement> measurements;
   std::optional<FrictionEstimate> result;  ///< once the error is reached

@@ -13,7 +13,8 @@ namespace odpd {
 template <int D>
 std::string fluid_text(const Scene<D>& scene, const Results& results);
 
-/// "fluid" of summary.json: "state", "dpd", "asked_for", "calibration" (where it is), "kinetic_theory", "groups" (dimensionless, of what was
+/// "fluid" of summary.json: "state", "dpd", "asked_for", "calibration" (where it is), "viscosity_expected" (of SDPD, where
+/// pairs/sdpd_expectation.h has a fluid near it), "kinetic_theory", "groups" (dimensionless, of what was
 /// measured), "viscosity_measured" (null where none was measured);
 /// a number that is infinite is null.
 template <int D>

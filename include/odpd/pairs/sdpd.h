@@ -91,6 +91,9 @@ class SdpdModel : public PairModel<D> {
   std::optional<ReferenceState> reference_state(double mass) const override;
   bool conservative() const override { return true; }
   bool thermal() const override { return p_.kT > 0.0; }
+  const SdpdParameters& fluid() const { return p_; }
+  /// Between particles of the first species.
+  const SdpdFriction& friction() const { return friction_[0]; }
   ModelParameters parameters() const override;
 
  private:
