@@ -66,15 +66,58 @@ Bodies<D>::Bodies(ObserverSettings settings, BodiesSettings bodies, const Scene<
   for (const std::size_t kind : kind_) share_[kind] += 1.0;
   for (double& s : share_) s = 1.0 / s;
   angle_.assign(kind_.size() * D, 0.0);
+  if (bodies_.control.every == 0) return;
+  const std::size_t directions = bodies_.msd.directions.size();
+  for (std::size_t kind = 0; kind < names_.size(); ++kind)
+    growth_.emplace_back(ModeGrowth::Settings{
+        .window = bodies_.msd.window,
+        .fit_from = bodies_.msd.fit_from,
+        .dt = dt,
+        .kT = scene.largest_kT(),
+        .waves = 1,
+        .modes_per_wave =
+            directions * static_cast<std::size_t>(std::count(kind_.begin(), kind_.end(), kind)),
+        .control_every = bodies_.control.every});
+}
+
+namespace {
+
+// What keeps a run from showing the mobility by how displacements grow.
+template <int D>
+void refuse_control(const ObserverEntry<D>& entry, const ObserverSettings& settings) {
+  const SceneSettings<D>& s = entry.scene.settings();
+  const auto fail = [&](const std::string& why) { entry.config.fail("control", why); };
+  if (settings.every != 1) fail("takes the noise of every step out: every must be 1");
+  if (s.mass > 0.0) fail("needs fluid.mass = 0, where the solve of a step tells what noise does");
+  if (!entry.two_stages)
+    fail(
+        "needs to know the second stage of a step: use the integrator 'trapezoidal' or 'midpoint'");
+  if (!(entry.scene.largest_kT() > 0.0)) fail("measures by thermal motion: kT must be positive");
+  if (s.driven()) fail("measures at equilibrium: nothing may drive, move or shear the scene");
+  const auto free = [](const BodySettings<D>& body) { return body.motion == BodyMotion::free; };
+  if (!std::all_of(s.bodies.begin(), s.bodies.end(), free))
+    fail("is of free bodies: all [[body]] must be free");
+}
+
+}  // namespace
+
+template <int D>
+double Bodies<D>::solves() const {
+  double solves = 0.0;
+  for (const ModeGrowth& growth : growth_) solves += growth.solves();
+  return solves;
 }
 
 template <int D>
 std::unique_ptr<Observer<D>> Bodies<D>::make(const ObserverEntry<D>& entry) {
-  ObserverSettings settings = entry.settings(2);
   if (entry.scene.settings().bodies.empty()) entry.config.fail("kind", "the scene has no [[body]]");
   BodiesSettings b;
   b.msd = read_msd(entry);
   b.around = read_fluid_around(entry);
+  b.control = read_control(entry.config, b.msd.window, entry.clock.dt);
+  const bool controlled = b.control.every > 0;
+  ObserverSettings settings = entry.settings(controlled ? 1 : 2);
+  if (controlled && entry.in_time) refuse_control(entry, settings);
   return std::make_unique<Bodies<D>>(std::move(settings), b, entry.scene, entry.clock.dt,
                                      entry.in_time);
 }
@@ -181,6 +224,42 @@ void Bodies<D>::count_fluid(const Particles<D>& particles, const Stage<D>& stage
               scene_.fluid_volume() / static_cast<double>(particles.free_count()), *own.ranks);
 }
 
+// Of each body and direction: the way of its centre in the step, and where that is controlled what the noise made of it.
+template <int D>
+void Bodies<D>::add_growth(const Particles<D>& particles, const StepRecord<D>& record) {
+  const std::vector<int>& directions = bodies_.msd.directions;
+  const PairNetwork<D>& network = record.start.network;
+  for (std::size_t kind = 0; kind < growth_.size(); ++kind) {
+    std::vector<double> way, made, response;
+    for (std::size_t b = 0; b < kind_.size(); ++b) {
+      if (kind_[b] != kind) continue;
+      const double share = 1.0 / static_cast<double>(members_[b].size());
+      for (const int c : directions) {
+        way.push_back(0.0);
+        for (const std::int32_t p : members_[b])
+          way.back() += share * record.dt * record.v_mid[index(p)][c];
+        if (!growth_[kind].control_is_due()) continue;
+        std::vector<Vec<D>> force(record.v_mid.size());
+        for (const std::int32_t p : members_[b]) force[index(p)][c] = share;
+        const std::vector<Vec<D>> w = record.respond(force, bodies_.control.tolerance);
+        std::array<double, 2> sums{};  // w.xi, w.R w
+        for (std::size_t edge = 0; edge < index(network.size()); ++edge) {
+          if (!network.counts(edge)) continue;
+          const Vec<D> slip = w[index(network.i[edge])] - w[index(network.j[edge])];
+          sums[0] += dot(record.edge_noise[edge], slip);
+          sums[1] -= dot(slip, friction_of<D>(network, edge, slip));
+        }
+        particles.ranks().sum(std::span(sums));
+        double mobility = 0.0;
+        for (const std::int32_t p : members_[b]) mobility += share * w[index(p)][c];
+        made.push_back(record.dt * sums[0]);
+        response.push_back(2.0 * mobility - sums[1]);
+      }
+    }
+    growth_[kind].add(way, made, response);
+  }
+}
+
 template <int D>
 void Bodies<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
   std::vector<double> sample(this->average().width(), 0.0);
@@ -195,6 +274,7 @@ void Bodies<D>::measure(const Clock&, const Particles<D>& particles, const StepR
   particles.ranks().sum(std::span(sample));
   this->add(std::move(sample));
   if (in_time_) follow(particles);
+  if (!growth_.empty()) add_growth(particles, record);
   count_fluid(particles, record.start);
 }
 
@@ -233,6 +313,25 @@ void Bodies<D>::add_diffusion(const std::string& name, std::size_t kind, Results
 }
 
 template <int D>
+void Bodies<D>::add_mobility(const std::string& name, std::size_t kind, Results& results) const {
+  if (growth_.empty()) return;
+  const ModeGrowth& growth = growth_[kind];
+  const ModeGrowth::Estimate whole = growth.chi(0), frozen = growth.frozen(0);
+  results.scalars.push_back({name + ".mobility", whole.mean, whole.error});
+  results.scalars.push_back({name + ".frozen_mobility", frozen.mean, frozen.error});
+  if (growth.samples() == 0) return;
+  Table table;
+  table.comment = {"mobility by the growth of displacements up to this lag, without the noise"};
+  table.columns = {"t", "mobility", "error"};
+  for (std::size_t lag = 1; lag <= growth.lags(); ++lag) {
+    const ModeGrowth::Estimate at = growth.at_lag(0, lag);
+    table.rows.push_back({growth.lag_time(lag), at.mean, at.error});
+  }
+  results.tables.emplace_back(fmt::format("{}_{}_mobility", this->settings().name, names_[kind]),
+                              std::move(table));
+}
+
+template <int D>
 void Bodies<D>::add_results(Results& results) const {
   const std::string& observer = this->settings().name;
   std::size_t column = 0;
@@ -248,6 +347,7 @@ void Bodies<D>::add_results(Results& results) const {
     add(name + ".velocity", D);
     add(name + ".angular_velocity", turns);
     add_diffusion(name, kind, results);
+    add_mobility(name, kind, results);
     results.scalars.push_back(
         without_error(name + ".exclusion_radius", around_.exclusion_radius(kind)));
   }
@@ -263,6 +363,8 @@ void Bodies<D>::save(StateWriter& out) const {
   turns_.save(out, "turns_");
   out.write("angle", angle_);
   out.write("orientation", orientation_);
+  for (std::size_t kind = 0; kind < growth_.size(); ++kind)
+    growth_[kind].save(out, fmt::format("growth_{}_", kind));
 }
 
 template <int D>
@@ -273,6 +375,8 @@ void Bodies<D>::load(const StateReader& in) {
   turns_.load(in, "turns_", kind_.size() * D);
   angle_ = in.read_doubles("angle");
   orientation_ = in.read_doubles("orientation");
+  for (std::size_t kind = 0; kind < growth_.size(); ++kind)
+    growth_[kind].load(in, fmt::format("growth_{}_", kind));
 }
 
 template class Bodies<2>;

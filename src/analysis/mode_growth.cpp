@@ -163,32 +163,32 @@ double ModeGrowth::error_of(
   });
 }
 
-void ModeGrowth::save(StateWriter& out) const {
-  out.write("steps", std::vector<std::int64_t>{steps_});
-  out.write("integral", integral_);
-  out.write("history", history_);
-  average_.save(out, "growth");
+void ModeGrowth::save(StateWriter& out, const std::string& prefix) const {
+  out.write(prefix + "steps", std::vector<std::int64_t>{steps_});
+  out.write(prefix + "integral", integral_);
+  out.write(prefix + "history", history_);
+  average_.save(out, prefix + "growth");
   if (!controlled()) return;
-  out.write("drift", drift_);
-  out.write("square", square_);
-  out.write("last", last_);
-  out.write("before", before_);
-  out.write("drift_history", drift_history_);
-  out.write("square_history", square_history_);
-  out.write("response", response_);
-  out.write("near", near_);
+  out.write(prefix + "drift", drift_);
+  out.write(prefix + "square", square_);
+  out.write(prefix + "last", last_);
+  out.write(prefix + "before", before_);
+  out.write(prefix + "drift_history", drift_history_);
+  out.write(prefix + "square_history", square_history_);
+  out.write(prefix + "response", response_);
+  out.write(prefix + "near", near_);
 }
 
-void ModeGrowth::load(const StateReader& in) {
+void ModeGrowth::load(const StateReader& in, const std::string& prefix) {
   const std::size_t n = integral_.size();
-  const std::vector<std::int64_t> steps = in.read_integers("steps");
+  const std::vector<std::int64_t> steps = in.read_integers(prefix + "steps");
   bool fits = steps.size() == 1;
   const auto fill = [&](const std::string& name, std::vector<double>& values, std::size_t size) {
-    values = in.read_doubles(name);
+    values = in.read_doubles(prefix + name);
     fits = fits && values.size() == size;
   };
   fill("integral", integral_, n);
-  history_ = in.read_doubles("history");
+  history_ = in.read_doubles(prefix + "history");
   fits = fits && history_.size() % n == 0 && !history_.empty() && history_.size() <= lags_ * n;
   if (controlled()) {
     fill("drift", drift_, n);
@@ -205,7 +205,7 @@ void ModeGrowth::load(const StateReader& in) {
         "what the checkpoint has of growing integrals does not fit the case's observers and their "
         "window: it is damaged or of another case");
   steps_ = steps[0];
-  average_.load(in, "growth");
+  average_.load(in, prefix + "growth");
 }
 
 }  // namespace odpd

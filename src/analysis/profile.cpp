@@ -64,8 +64,9 @@ std::unique_ptr<Observer<D>> Profile<D>::make(const ObserverEntry<D>& entry) {
           : fit == "parabola" ? ProfileFit::parabola
           : fit == "sine"     ? ProfileFit::sine
                               : ProfileFit::none;
-  const ForceWave& wave = scene.settings().force_wave;
-  if (p.fit == ProfileFit::sine && (wave.number == 0 || wave.along != p.axis))
+  const FlowWave& wave = scene.settings().force_wave;
+  if (p.fit == ProfileFit::sine &&
+      (wave.number == 0 || wave.along != p.axis || wave.shape != FlowWave::Shape::sine))
     config.fail("fit", "a sine needs body_force.wave along the profile's axis");
   p.component =
       read_direction<D>(config, "component", scene.box().shear ? scene.box().shear->flow : 0);

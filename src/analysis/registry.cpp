@@ -18,6 +18,7 @@
 #include "odpd/analysis/velocities.h"
 #include "odpd/analysis/viscosity.h"
 #include "odpd/analysis/wall_force.h"
+#include "odpd/analysis/wave_amplitude.h"
 #include "odpd/core/error.h"
 #include "odpd/core/log.h"
 
@@ -38,6 +39,7 @@ const std::vector<ObserverKind<D>>& observer_kinds() {
       {.name = "viscosity", .make = Viscosity<D>::make, .of_motion = true},
       {.name = "divergence", .make = Divergence<D>::make, .of_motion = true},
       {.name = "velocities", .make = Velocities<D>::make, .of_motion = true},
+      {.name = "wave", .make = WaveAmplitude<D>::make, .of_motion = true},
       {.name = "modes", .make = Modes<D>::make, .of_motion = true},
       {.name = "molecules", .make = MoleculeStatistics<D>::make}};
   return table;

@@ -68,13 +68,6 @@ bool sheared_across(const SceneSettings<D>& s, ViscosityScene& v) {
   return false;
 }
 
-template <int D>
-int direction_of(const Vec<D>& force) {
-  int c = 0;
-  while (c + 1 < D && force[c] == 0.0) ++c;
-  return c;
-}
-
 // Walls with a uniform force along them, or else the first region with a force across its axis.
 template <int D>
 bool pushed(const SceneSettings<D>& s, ViscosityScene& v) {
@@ -121,6 +114,7 @@ ViscosityScene viscosity_scene(const Scene<D>& scene) {
   if (sheared_across(s, v)) {
     v.kind = Kind::sheared;
   } else if (s.force_wave.number > 0) {
+    if (s.force_wave.shape != FlowWave::Shape::sine) return v;
     v.kind = Kind::sine;
     v.axis = s.force_wave.along;
     v.component = direction_of(s.body_force);
@@ -191,7 +185,8 @@ std::unique_ptr<Observer<D>> Viscosity<D>::make(const ObserverEntry<D>& entry) {
     config.fail("kind",
                 "nothing in this scene shows a viscosity: move a wall, shear it steadily, drive "
                 "the fluid along its walls or by body_force.wave, or leave a fully periodic fluid "
-                "of kT > 0 at rest");
+                "of kT > 0 at rest. Taylor-Green vortices and a flow that decays are for the "
+                "observer 'wave'");
   ViscositySettings v;
   if (kind.has_profile()) {
     v.bins = config.positive_integer("bins", 20);

@@ -18,23 +18,38 @@ int read_direction(const Config& config, const std::string& key,
   return (fallback ? config.choice(key, names, *fallback) : config.choice(key, names))[0] - 'x';
 }
 
+// The wave that makes a force or a flow of `key`, of this amplitude; `does` is what a component along a sine would do.
 template <int D>
-void read_wave(const Config& body_force, SceneSettings<D>& scene) {
-  if (!body_force.has("wave")) return;
-  const Config wave = body_force.table("wave");
-  const int along = read_direction<D>(wave, "along");
-  scene.force_wave = {along, wave.positive_integer("number", 1)};
-  if (!scene.box.is_periodic(along))
-    wave.fail("along", fmt::format("direction {} is bounded: a sine must close on itself, along a "
-                                   "periodic direction",
-                                   "xyz"[along]));
-  if (dot(scene.body_force, scene.body_force) == 0.0)
-    body_force.fail("wave", "needs an amplitude: give body_force.force");
-  if (scene.body_force[along] != 0.0)
-    body_force.fail("force",
-                    fmt::format("component {} points along the wave, where it drives no flow but "
-                                "compresses: it must be 0",
-                                "xyz"[along]));
+FlowWave read_wave(const Config& table, const std::string& key, const Vec<D>& amplitude,
+                   const Box<D>& box, const char* does) {
+  const Config entry = table.table("wave");
+  const bool vortices = entry.choice("shape", {"sine", "taylor-green"}, "sine") == "taylor-green";
+  FlowWave wave{.along = read_direction<D>(entry, "along"),
+                .number = entry.positive_integer("number", 1),
+                .shape = vortices ? FlowWave::Shape::taylor_green : FlowWave::Shape::sine};
+  const auto require_periodic = [&](int c) {
+    if (!box.is_periodic(c))
+      entry.fail("along", fmt::format("direction {} is bounded: a sine must close on itself, along "
+                                      "a periodic direction",
+                                      "xyz"[c]));
+  };
+  require_periodic(wave.along);
+  if (dot(amplitude, amplitude) == 0.0)
+    table.fail("wave", fmt::format("needs an amplitude: give {}", key));
+  if (amplitude[wave.along] != 0.0)
+    table.fail(key.substr(key.find('.') + 1),
+               fmt::format("component {} points along the wave, where it {}: it must be 0{}",
+                           "xyz"[wave.along], does,
+                           vortices ? " (that of the vortices follows from the others)" : ""));
+  if (!vortices) return wave;
+  const int across = direction_of(amplitude);
+  require_periodic(across);
+  for (int c = across + 1; c < D; ++c)
+    if (amplitude[c] != 0.0)
+      table.fail(
+          key.substr(key.find('.') + 1),
+          "vortices of a plane have one amplitude: give one component and leave the others 0");
+  return wave;
 }
 
 template <int D>
@@ -85,7 +100,9 @@ template <int D>
 void read_drive(const Config& config, SceneSettings<D>& scene) {
   const Config body_force = config.table("body_force");
   scene.body_force = read_optional_vector<D>(body_force, "force");
-  read_wave(body_force, scene);
+  if (body_force.has("wave"))
+    scene.force_wave = read_wave(body_force, "body_force.force", scene.body_force, scene.box,
+                                 "drives no flow but compresses");
   for (const Config& entry : body_force.tables("region"))
     scene.force_regions.push_back(read_region(entry, scene.box));
   if (scene.held() || norm(net_force(scene)) <= 1e-9 * scene.largest_force()) return;
@@ -94,6 +111,27 @@ void read_drive(const Config& config, SceneSettings<D>& scene) {
       "in a fully periodic box nothing balances a net force, so a massless fluid has no answer "
       "and one with mass accelerates for ever: add walls, or remove the force, or let it add up to "
       "nothing (body_force.wave, or two regions that oppose each other)");
+}
+
+template <int D>
+void read_start_flow(const Config& config, SceneSettings<D>& scene) {
+  const Config start = config.table("start");
+  if (!start.has("velocity") && !start.has("wave")) return;
+  const char* key = start.has("velocity") ? "velocity" : "wave";
+  if (scene.mass == 0.0)
+    start.fail(key,
+               "without mass velocities follow from the forces of the moment, and none is left of "
+               "those at the start: set fluid.mass, or drive the flow by body_force.wave");
+  if (config.has("shear"))
+    start.fail(key, "[shear] gives particles with mass its own flow at the start: leave it out");
+  scene.start_velocity = read_optional_vector<D>(start, "velocity");
+  if (!start.has("wave"))
+    start.fail(
+        "velocity",
+        "is the amplitude of a wave: give start.wave, e.g. { shape = \"taylor-green\", along "
+        "= \"y\" }");
+  scene.start_wave = read_wave(start, "start.velocity", scene.start_velocity, scene.box,
+                               "is no flow but compresses");
 }
 
 template <int D>
@@ -140,6 +178,8 @@ void read_shear(const Config& config, SceneSettings<D>& scene) {
 
 template void read_drive<2>(const Config&, SceneSettings<2>&);
 template void read_drive<3>(const Config&, SceneSettings<3>&);
+template void read_start_flow<2>(const Config&, SceneSettings<2>&);
+template void read_start_flow<3>(const Config&, SceneSettings<3>&);
 template void read_shear<2>(const Config&, SceneSettings<2>&);
 template void read_shear<3>(const Config&, SceneSettings<3>&);
 

@@ -271,7 +271,7 @@ void relax(const Box<D>& box, const PairModel<D>& model, const Surroundings<D>& 
 
 template <int D>
 void draw_velocities(std::uint64_t seed, double kT, double mass, bool conserved,
-                     Particles<D>& particles) {
+                     const std::function<Vec<D>(const Vec<D>&)>& flow, Particles<D>& particles) {
   if (mass == 0.0) return;
   particles.carry_inertia();
   const CounterRandom random(seed, Stream::start_velocities);
@@ -286,6 +286,7 @@ void draw_velocities(std::uint64_t seed, double kT, double mass, bool conserved,
     const auto w = random.normals(0, 0, static_cast<std::uint64_t>(particles.id[i]), 0);
     for (std::size_t c = 0; c < D; ++c)
       particles.end_velocity[i].x[c] = std::sqrt(kT / mass) * w[c];
+    if (flow) particles.end_velocity[i] += flow(particles.position[i]);
     if (own.owns(i)) mean += share * particles.end_velocity[i];
   }
   own.ranks->sum(std::span(mean.x));
@@ -311,8 +312,10 @@ void draw_velocities(std::uint64_t seed, double kT, double mass, bool conserved,
   }
 }
 
-template void draw_velocities<2>(std::uint64_t, double, double, bool, Particles<2>&);
-template void draw_velocities<3>(std::uint64_t, double, double, bool, Particles<3>&);
+template void draw_velocities<2>(std::uint64_t, double, double, bool,
+                                 const std::function<Vec<2>(const Vec<2>&)>&, Particles<2>&);
+template void draw_velocities<3>(std::uint64_t, double, double, bool,
+                                 const std::function<Vec<3>(const Vec<3>&)>&, Particles<3>&);
 template BallCells<2> balls_of_bodies<2>(const Box<2>&, const Particles<2>&);
 template BallCells<3> balls_of_bodies<3>(const Box<3>&, const Particles<3>&);
 template void place_walls<2>(const SceneSettings<2>&, Particles<2>&);

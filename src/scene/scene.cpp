@@ -49,7 +49,13 @@ Scene<D>::Scene(SceneSettings<D> settings, const Communicator& ranks)
   join_molecules();
   relax(settings_.box, *model_, *this, settings_.relax_sweeps, particles_);
   join_images(bonds_, settings_.box, particles_);
-  draw_velocities(settings_.seed, largest_kT(), settings_.mass, conserves_momentum(), particles_);
+  std::function<Vec<D>(const Vec<D>&)> flow;
+  if (settings_.start_wave.number > 0)
+    flow = [this](const Vec<D>& r) {
+      return settings_.start_wave.at(r, settings_.box, settings_.start_velocity);
+    };
+  draw_velocities(settings_.seed, largest_kT(), settings_.mass, conserves_momentum(), flow,
+                  particles_);
   if (settings_.box.shear) start_flow();
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "odpd/core/index.h"
 #include "odpd/scene/body_places.h"
@@ -209,7 +208,7 @@ bool SceneSettings<D>::driven() const {
     return b.velocity.velocity != Vec<D>{} || b.velocity.angular != Vec<D>{} ||
            b.load.force != Vec<D>{} || b.load.torque != Vec<D>{};
   };
-  return (box.shear && box.shear->rate != 0.0) || largest_force() > 0.0 ||
+  return (box.shear && box.shear->rate != 0.0) || largest_force() > 0.0 || start_wave.number > 0 ||
          std::any_of(walls.begin(), walls.end(), moves) ||
          std::any_of(bodies.begin(), bodies.end(), pushed);
 }
@@ -229,10 +228,7 @@ bool SceneSettings<D>::loaded() const {
 
 template <int D>
 Vec<D> SceneSettings<D>::force_at(const Vec<D>& r) const {
-  Vec<D> force = body_force;
-  if (force_wave.number > 0)
-    force *= std::sin(2.0 * std::numbers::pi * static_cast<double>(force_wave.number) *
-                      r[force_wave.along] / box.size[force_wave.along]);
+  Vec<D> force = force_wave.number > 0 ? force_wave.at(r, box, body_force) : body_force;
   for (const auto& region : force_regions)
     if (r[region.axis] >= region.from && r[region.axis] < region.to) force += region.force;
   return force;
@@ -240,7 +236,11 @@ Vec<D> SceneSettings<D>::force_at(const Vec<D>& r) const {
 
 template <int D>
 bool SceneSettings<D>::forces_along(int component) const {
-  return body_force[component] != 0.0 ||
+  const auto along = [&](const FlowWave& wave, const Vec<D>& amplitude) {
+    return amplitude[component] != 0.0 ||
+           (wave.shape == FlowWave::Shape::taylor_green && wave.along == component);
+  };
+  return along(force_wave, body_force) || along(start_wave, start_velocity) ||
          std::any_of(force_regions.begin(), force_regions.end(),
                      [&](const ForceRegion<D>& region) { return region.force[component] != 0.0; });
 }
@@ -248,6 +248,9 @@ bool SceneSettings<D>::forces_along(int component) const {
 template <int D>
 double SceneSettings<D>::largest_force() const {
   double force = norm(body_force);
+  if (force_wave.shape == FlowWave::Shape::taylor_green)
+    force *= std::max(1.0, force_wave.wave_number(box, direction_of(body_force)) /
+                               force_wave.wave_number(box, force_wave.along));
   for (const auto& region : force_regions) force += norm(region.force);
   return force;
 }
@@ -319,6 +322,7 @@ SceneSettings<D> read_scene_settings(const Config& config,
   complete_walls(config, scene);
   make_room(scene);
   read_drive(config, scene);
+  read_start_flow(config, scene);
   read_shear(config, scene);
   read_drag(config.table("fluid"), scene);
   check_body_positions(config, scene);

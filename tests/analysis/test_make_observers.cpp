@@ -172,6 +172,12 @@ TEST_F(MakeObservers, RefuseWhatTheSceneHasNot) {
   refused(dragged, "viscosity", {"kind"});
   refused(heavy, "heat", {"kind", "fluid.mass"});
   refused(dragged, "heat", {"kind", "fluid.zeta_0"});
+  refused(heavy, "wave", {"kind", "body_force.wave", "start.wave"});
+  auto vortices = s;
+  vortices.body_force = {{1.0, 0.0}};
+  vortices.force_wave = {.along = 1, .number = 1, .shape = odpd::FlowWave::Shape::taylor_green};
+  refused(vortices, "viscosity", {"kind", "'wave'"});
+  refused(vortices, "profile\"\nfit = \"sine", {"fit", "body_force.wave"});
 }
 
 TEST_F(MakeObservers, RefuseTwoOfOneName) {

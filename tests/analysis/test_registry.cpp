@@ -64,8 +64,9 @@ odpd::SceneSettings<2> everything(double mass = 0.0) {
 }
 
 /// A fluid at rest with a free body, for kinds that a wall stops.
-odpd::SceneSettings<2> at_rest(double mass = 0.0) {
-  const Config config = Config::from_text(R"(
+odpd::SceneSettings<2> at_rest(double mass = 0.0, const std::string& kT = "1.0") {
+  const Config config =
+      Config::from_text(R"(
     [box]
     size = [6.0, 6.0]
     periodic = [true, true]
@@ -80,7 +81,7 @@ odpd::SceneSettings<2> at_rest(double mass = 0.0) {
     radius = 0.3
     positions = [{ at = [2.0, 3.0] }]
   )",
-                                          "at rest", {"fluid.mass=" + std::to_string(mass)});
+                        "at rest", {"fluid.mass=" + std::to_string(mass), "fluid.kT=" + kT});
   return odpd::read_scene_settings<2>(config);
 }
 
@@ -183,7 +184,7 @@ void expect_named_and_continued(const odpd::SceneSettings<2>& settings,
 TEST(EveryKind, NamesWhatItGivesAndContinues) {
   std::vector<std::string> keys;
   for (const ObserverKind<2>& kind : odpd::observer_kinds<2>())
-    if (kind.name != "modes" && kind.name != "velocities")
+    if (kind.name != "modes" && kind.name != "velocities" && kind.name != "wave")
       keys.push_back("kind = \"" + kind.name + "\"\n");
   expect_named_and_continued(everything(), keys);
   expect_named_and_continued(everything(1.0), {"kind = \"velocities\"\n"});
@@ -192,6 +193,13 @@ TEST(EveryKind, NamesWhatItGivesAndContinues) {
                                          modes + "control = true\ncontrol_every = 3\n"});
   expect_named_and_continued(at_rest(1.0),
                              {"kind = \"modes\"\nnumbers = [1, 3]\n", modes + "every = 2\n"});
+  const std::string bodies = "kind = \"bodies\"\nwindow = 0.6\ncontrol = true\n";
+  expect_named_and_continued(at_rest(), {bodies, bodies + "control_every = 3\n"});
+  auto forced = at_rest(), decaying = at_rest(1.0);
+  forced.force_wave = decaying.start_wave = {.along = 1, .number = 1};
+  forced.body_force = decaying.start_velocity = {{1.0, 0.0}};
+  expect_named_and_continued(forced, {"kind = \"wave\"\n"});
+  expect_named_and_continued(decaying, {"kind = \"wave\"\nevery = 2\n"});
 }
 
 class Registry : public ::testing::Test, protected WholeRun {};
@@ -245,6 +253,37 @@ TEST_F(Registry, TakesKindsOfAUser) {
         make("kind = \"mean-speed\"\n", {own[0], own[0]});
       },
       {"already", "mean-speed"});
+}
+
+// Two runs with the same forces and next to no noise, one with a force on the body: the difference of the velocities is the force times what
+// control finds without one. The opposite force is on the fluid alone, that of control on all particles.
+TEST(BodiesWithControl, FrozenMobilityIsVelocityPerForce) {
+  constexpr double force = 10.0;
+  auto settings = at_rest(0.0, "1e-12");
+  WholeRun calm(settings);
+  settings.bodies[0].load.force = {{force, 0.0}};
+  WholeRun pushed(settings);
+  calm.clock.dt = pushed.clock.dt = 1e-4;
+  const auto observer = calm.make(
+      "kind = \"bodies\"\nwindow = 1e-3\ncontrol = true\ncontrol_tolerance = 1e-6\ndirections = "
+      "[\"x\"]\n");
+  calm.run(12, {observer.get()});
+  pushed.run(12, {});
+  const auto mean_speed = [](WholeRun& run) {
+    const auto& record = run.integrator->step(run.dynamics, run.clock);
+    double sum = 0.0, members = 0.0;
+    for (std::size_t i = 0; i < record.v_mid.size(); ++i) {
+      if (run.scene.particles().is_free(i)) continue;
+      sum += record.v_mid[i][0];
+      members += 1.0;
+    }
+    return std::pair(sum / members, members / static_cast<double>(record.v_mid.size()));
+  };
+  const auto [with, share] = mean_speed(pushed);
+  const double mobility = (with - mean_speed(calm).first) / force * (1.0 - share);
+  EXPECT_GT(mobility, 0.01);
+  EXPECT_NEAR(records::mean(records::results(*observer), "bodies.disk.frozen_mobility"), mobility,
+              0.01 * mobility);
 }
 
 TEST(Results, ObjectToWhatNobodyMeasures) {

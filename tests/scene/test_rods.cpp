@@ -63,7 +63,7 @@ TEST(Rods, StartAtRandomWithFiveFreedoms) {
   const odpd::Box<3> box{{{60.0, 60.0, 60.0}}, {true, true, true}};
   odpd::Particles<3> particles;
   odpd::place_bodies<3>({rod}, box, {}, box.size, 7, true, particles);
-  odpd::draw_velocities<3>(8, kT, mass, false, particles);
+  odpd::draw_velocities<3>(8, kT, mass, false, {}, particles);
   Vec<3> mean{}, square{};
   double linear = 0.0, angular = 0.0, all = 0.0, inertia = 0.0;
   for (const double s : support::rod_places) inertia += mass * s * s;

@@ -176,6 +176,35 @@ TEST(Scene, AModelOfAnotherNumberOfSpeciesIsRefused) {
   support::expect_error<odpd::ConfigError>([&] { Scene<2>{s}; }, {"no pair model"});
 }
 
+// A flow at the start comes on top of Maxwell velocities; what momentum it has on these particles is taken from everyone.
+TYPED_TEST(SceneTest, StartsWithAFlow) {
+  constexpr int D = TypeParam::D;
+  SceneSettings<D> s;
+  s.box.size = support::uniform_vec<D>(6.0);
+  s.box.periodic.fill(true);
+  s.start = StartKind::file;
+  s.start_positions = support::random_points<D>({}, s.box.size, 11, 4);
+  s.relax_sweeps = 0;
+  s.mass = 2.0;
+  const Scene<D> still(s);
+  s.start_velocity[0] = 0.5;
+  s.start_wave = {.along = 1, .number = 1};
+  const Scene<D> flowing(s);
+  Vec<D> mean{}, momentum{};
+  for (const Vec<D>& r : s.start_positions)
+    mean[0] += 0.5 * std::sin(std::numbers::pi * r[1] / 3.0) / 11.0;
+  EXPECT_GT(norm(mean), 0.005) << "the test needs something to subtract";
+  for (std::size_t i = 0; i < 11; ++i) {
+    const Vec<D>& r = flowing.particles().position[i];
+    Vec<D> flow = -1.0 * mean;
+    flow[0] += 0.5 * std::sin(std::numbers::pi * r[1] / 3.0);
+    const Vec<D> more = flowing.particles().end_velocity[i] - still.particles().end_velocity[i];
+    EXPECT_LT(norm(more - flow), 1e-13);
+    momentum += flowing.particles().end_velocity[i];
+  }
+  EXPECT_LT(norm(momentum), 1e-13);
+}
+
 // On a finite set of particles neither a wave nor opposite regions add up to nothing; in a box without walls the rest is
 // taken from everyone, between walls it stays.
 TYPED_TEST(SceneTest, ForcesThatVary) {

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numbers>
+
 #include "cases.h"
 #include "support/errors.h"
 
@@ -247,6 +250,65 @@ TEST(SceneSettings, ReadsAWaveAndRegions) {
   EXPECT_EQ(two.force_at({{1.0, 2.0, 2.0}})[0], -0.3);
   expect_error<ConfigError>([&] { settings<3>(periodic + up, {}); },
                             {"body_force.region", "net force"});
+}
+
+// Without divergence, and an eigenfunction of the Laplacian, by differences.
+TEST(SceneSettings, TaylorGreenVorticesAreAWaveWithoutDivergence) {
+  const auto s =
+      settings<3>(periodic, {"box.size=[5.0, 4.0, 6.0]", "body_force.force=[0.1, 0.0, 0.0]",
+                             "body_force.wave={shape=\"taylor-green\", along=\"z\", number=2}"});
+  EXPECT_TRUE(s.forces_along(0) && s.forces_along(2));
+  EXPECT_FALSE(s.forces_along(1));
+  const double k2 = s.force_wave.wave_number_squared(s.box, s.body_force), h = 1e-3;
+  EXPECT_NEAR(k2, 16.0 * std::numbers::pi * std::numbers::pi * (1.0 / 25.0 + 1.0 / 36.0), 1e-12);
+  const odpd::Vec<3> r{{1.3, 0.4, 2.9}};
+  const auto f = s.force_at(r);
+  odpd::Vec<3> laplacian{};
+  double divergence = 0.0, largest = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    odpd::Vec<3> step{};
+    step[c] = h;
+    const auto above = s.force_at(r + step), below = s.force_at(r - step);
+    divergence += (above[c] - below[c]) / (2.0 * h);
+    laplacian += 1.0 / (h * h) * (above + below - 2.0 * f);
+  }
+  EXPECT_NEAR(divergence, 0.0, 1e-7);
+  EXPECT_GT(norm(f), 0.02);
+  EXPECT_LT(norm(laplacian + k2 * f), 1e-5 * k2 * norm(f) + 1e-6);
+  for (int k = 0; k < 1000; ++k)
+    largest = std::max(largest, norm(s.force_at({{0.005 * k, 0.0, 0.0371 * k}})));
+  EXPECT_LE(largest, s.largest_force());
+  EXPECT_GT(largest, 0.95 * s.largest_force());
+}
+
+TEST(SceneSettings, ReadsAFlowAtTheStart) {
+  const Overrides flow{"start.velocity=[0.0, 0.3, 0.0]",
+                       "start.wave={shape=\"taylor-green\", along=\"x\"}"};
+  Overrides heavy = flow;
+  heavy.push_back("fluid.mass=1.0");
+  const auto s = settings<3>(periodic, heavy);
+  EXPECT_TRUE(s.driven());
+  EXPECT_EQ(s.start_velocity[1], 0.3);
+  EXPECT_EQ(s.start_wave.number, 1);
+  const auto refused = [&](const Overrides& overrides, std::initializer_list<const char*> parts) {
+    expect_error<ConfigError>([&] { settings<3>(periodic, overrides); }, parts);
+  };
+  refused(flow, {"start.velocity", "fluid.mass", "body_force.wave"});
+  Overrides sheared = heavy, alone = heavy, both = heavy, along = heavy;
+  sheared.push_back("shear.rate=0.1");
+  refused(sheared, {"start.velocity", "[shear]"});
+  refused({heavy[0], heavy[2]}, {"start.velocity", "start.wave"});
+  refused({heavy[1], heavy[2]}, {"start.wave", "amplitude", "start.velocity"});
+  both.push_back("start.velocity=[0.0, 0.3, 0.1]");
+  refused(both, {"start.velocity", "one component"});
+  along.push_back("start.velocity=[0.1, 0.3, 0.0]");
+  refused(along, {"start.velocity", "component x"});
+  expect_error<ConfigError>(
+      [] {
+        settings<2>(channel, {"fluid.mass=1.0", "start.velocity=[0.0, 0.3]",
+                              "start.wave={shape=\"taylor-green\", along=\"x\"}"});
+      },
+      {"start.wave.along", "y is bounded"});
 }
 
 TEST(SceneSettings, RefusesBadWavesAndRegions) {

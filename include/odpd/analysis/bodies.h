@@ -7,14 +7,20 @@
 //   diffusion, rotational_diffusion   from mean-square displacements of centre and orientation, the latter about each axis
 //                     that a body turns about: three in 3D, two of a rod (free bodies; not under [shear], where they turn with
 //                     the flow)
+//   mobility          velocity per force on one body along the same directions, with `control`: how its displacement grows at
+//                     equilibrium, <x(t)^2>/(2 kT) -> mobility t, with the noise taken out by one solve for each body and
+//                     direction (analysis/mode_growth.h); D = kT mobility (Einstein). frozen_mobility: what configurations that
+//                     do not change would give
 //   g(q)              density of the fluid at distance q from the centre, and the exclusion radius (analysis/fluid_around.h)
 //
 // and the mean velocity of the fluid particles, likewise. The orientation is followed by adding up the rotation from sample
 // to sample, so it must turn by less than half a turn between two.
 #include "odpd/analysis/displacements.h"
 #include "odpd/analysis/fluid_around.h"
+#include "odpd/analysis/mode_growth.h"
 #include "odpd/analysis/msd.h"
 #include "odpd/analysis/observer.h"
+#include "odpd/analysis/observer_keys.h"
 #include "odpd/particles/constituents.h"
 
 namespace odpd {
@@ -22,6 +28,7 @@ namespace odpd {
 struct BodiesSettings {
   MsdSettings msd;             ///< lags; the directions are those of the centre's displacements
   FluidAroundSettings around;  ///< g(q)
+  ControlKeys control{};       ///< of the mobility; every 0: none
 };
 
 template <int D>
@@ -32,6 +39,7 @@ class Bodies : public Observer<D> {
          bool in_time = true);
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   double moment() const override { return 0.5; }
+  double solves() const override;
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
   void add_results(Results& results) const override;
@@ -48,6 +56,8 @@ class Bodies : public Observer<D> {
   void add_motion(const Particles<D>& particles, const StepRecord<D>& record,
                   std::vector<double>& sample) const;
   void follow(const Particles<D>& particles);
+  void add_growth(const Particles<D>& particles, const StepRecord<D>& record);
+  void add_mobility(const std::string& name, std::size_t kind, Results& results) const;
   void count_fluid(const Particles<D>& particles, const Stage<D>& stage);
   void add_diffusion(const std::string& name, std::size_t kind, Results& results) const;
 
@@ -63,6 +73,8 @@ class Bodies : public Observer<D> {
   Displacements places_, turns_;
   std::vector<double> angle_;        // rotation so far, D numbers per body
   std::vector<double> orientation_;  // at the last sample
+  std::vector<ModeGrowth>
+      growth_;  // of each [[body]] with control; a mode is a body and a direction
 };
 
 }  // namespace odpd

@@ -80,9 +80,10 @@ class ModeGrowth {
   /// Phi of each mode.
   const std::vector<double>& integral() const { return integral_; }
 
-  void save(StateWriter& out) const;
+  /// `prefix`: of the names, where an observer keeps several.
+  void save(StateWriter& out, const std::string& prefix = "") const;
   /// Throws IoError for a state of other wave numbers or another window.
-  void load(const StateReader& in);
+  void load(const StateReader& in, const std::string& prefix = "");
 
  private:
   // A sample has of each wave <Phi^2>/(2 kT) by lag and its slope; with control also chi(t) by lag, the slope of chi(t) t,

@@ -1,6 +1,7 @@
 #pragma once
 // Filling a scene: frozen wall layers, fluid particles from random positions, a lattice or a file, and the removal of
 // overlaps by damped descent in the energy (no friction matrix needed, so it works before any solve can).
+#include <functional>
 #include <vector>
 
 #include "odpd/dynamics/surroundings.h"
@@ -23,11 +24,11 @@ template <int D>
 void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<D>& high,
                  Particles<D>& particles);
 
-/// Gives the free particles Maxwell velocities of variance kT/mass per component; where nothing takes momentum away
-/// (`conserved`) their mean is zero. With mass 0 nothing.
+/// Gives the free particles Maxwell velocities of variance kT/mass per component, on top of a `flow`; where nothing takes
+/// momentum away (`conserved`) their mean is zero. With mass 0 nothing.
 template <int D>
 void draw_velocities(std::uint64_t seed, double kT, double mass, bool conserved,
-                     Particles<D>& particles);
+                     const std::function<Vec<D>(const Vec<D>&)>& flow, Particles<D>& particles);
 
 /// `sweeps` times: every free particle moves along its force F by |F| / (sum of its stiffnesses), at most r_c/20.
 template <int D>

@@ -11,6 +11,7 @@
 #include "odpd/pairs/bonds.h"
 #include "odpd/pairs/registry.h"
 #include "odpd/scene/bodies.h"
+#include "odpd/scene/flow_wave.h"
 #include "odpd/scene/molecules.h"
 
 namespace odpd {
@@ -39,12 +40,6 @@ struct WallSettings {
   std::int32_t species = 0;
   /// Smooth potential u = stiffness/2 h^2 of a fluid particle a depth h > 0 behind the surface (force/length).
   double stiffness = 1000.0;
-};
-
-/// Makes the body force a wave, times sin(2 pi number r_along / L_along); number 0: it is uniform.
-struct ForceWave {
-  int along = 0;
-  std::int64_t number = 0;
 };
 
 /// A force on the free particles with from <= r_axis < to.
@@ -77,7 +72,7 @@ struct SceneSettings {
   /// Contents of that file, particles of the start file counted from 0.
   std::vector<Bond> start_bonds;
   Vec<D> body_force{};  ///< on every particle that moves, or amplitude of the wave (force)
-  ForceWave force_wave;
+  FlowWave force_wave;  ///< number 0: the force is uniform
   std::vector<ForceRegion<D>> force_regions;
   StartKind start = StartKind::random;
   std::string start_file;                     ///< for StartKind::file, resolved
@@ -87,10 +82,12 @@ struct SceneSettings {
   /// Constituents of each body in the file, in the order of the particles' bodies; empty: bodies start as the case says.
   std::vector<std::vector<Vec<D>>> start_bodies;
   std::int64_t relax_sweeps = 100;  ///< of overlap removal before the run
+  Vec<D> start_velocity{};          ///< amplitude of the flow at the start, with mass (length/time)
+  FlowWave start_wave;              ///< number 0: none
 
   std::int64_t molecule_beads() const;  ///< of all molecules
   std::int64_t body_particles() const;  ///< of all bodies
-  /// Something drives a flow: a force, a moving wall, a body that is moved or pushed, shear.
+  /// Something drives a flow, or has at the start: a force, a moving wall, a body that is moved or pushed, shear.
   bool driven() const;
   /// Walls, or bodies of known motion, hold the fluid and take up a net force.
   bool held() const;
@@ -101,7 +98,7 @@ struct SceneSettings {
   Vec<D> force_at(const Vec<D>& r) const;
   /// It depends on r.
   bool force_varies() const { return force_wave.number > 0 || !force_regions.empty(); }
-  /// It has this component somewhere.
+  /// It, or the flow at the start, has this component somewhere.
   bool forces_along(int component) const;
   /// A bound of its magnitude.
   double largest_force() const;
