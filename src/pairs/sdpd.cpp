@@ -168,11 +168,8 @@ SmoothingKernel::Shape read_kernel(const Config& fluid) {
   return static_cast<SmoothingKernel::Shape>(at);
 }
 
-// All particles fill space alike.
-double number_density(const FluidKeys& keys) { return keys.density + keys.others; }
-
 // K of [fluid], by itself or by the speed of sound.
-double read_modulus(const FluidKeys& keys) {
+double read_modulus(const FluidKeys& keys, double d_0) {
   const Config& fluid = keys.fluid;
   if (fluid.has("bulk_modulus") == fluid.has("sound_speed"))
     fluid.fail("bulk_modulus", "give bulk_modulus or sound_speed, one of the two");
@@ -182,15 +179,15 @@ double read_modulus(const FluidKeys& keys) {
     fluid.fail(
         "sound_speed",
         "there is no sound without mass (K = density mass sound_speed^2): give bulk_modulus");
-  return number_density(keys) * keys.mass * c * c;
+  return d_0 * keys.mass * c * c;
 }
 
-EquationOfState read_state(const FluidKeys& keys, double kT) {
+EquationOfState read_state(const FluidKeys& keys, double d_0, double kT) {
   const Config& fluid = keys.fluid;
   EquationOfState state;
-  state.d_0 = number_density(keys);
-  state.modulus = read_modulus(keys);
-  const double usual = kT > 0.0 ? 100.0 * number_density(keys) * kT : 0.1 * state.modulus;
+  state.d_0 = d_0;
+  state.modulus = read_modulus(keys, d_0);
+  const double usual = kT > 0.0 ? 100.0 * d_0 * kT : 0.1 * state.modulus;
   state.background = fluid.number("background_pressure", usual);
   if (fluid.choice("equation_of_state", {"linear", "tait"}, "linear") == "tait") {
     state.exponent = fluid.positive("tait_exponent", 7.0);
@@ -252,20 +249,22 @@ template <int D>
 std::shared_ptr<const PairModel<D>> read_sdpd(const FluidKeys& keys) {
   const Config& fluid = keys.fluid;
   refuse_dpd_keys(fluid);
-  if (number_density(keys) == 0.0)
+  // All particles fill space alike.
+  const double n = keys.density + keys.others;
+  if (n == 0.0)
     fluid.fail("density",
                "the equation of state and the support need it, and a start file says it too late: "
                "give fluid.density or fluid.count, in agreement with the file");
   SdpdParameters p;
   p.kT = fluid.non_negative("kT");
   p.kernel = read_kernel(fluid);
-  const double spacing = std::pow(number_density(keys), -1.0 / D),
-               support = fluid.positive("support", 3.0);
+  const double d_0 = fluid.positive("reference_density", n);
+  const double spacing = std::pow(d_0, -1.0 / D), support = fluid.positive("support", 3.0);
   if (support < 1.0)
     fluid.fail("support",
                "is in spacings density^(-1/d): below 1 a particle has no neighbours, 3 is usual");
   p.support = support * spacing;
-  p.state = read_state(keys, p.kT);
+  p.state = read_state(keys, d_0, p.kT);
   const SdpdFriction friction = read_sdpd_friction(fluid, fluid, D);
   const auto table = pair_table(keys, friction, [&](const Config& pair, const SdpdFriction&) {
     refuse_dpd_keys(pair);
