@@ -19,6 +19,7 @@ namespace {
 // Of the forces' norm: what pair forces have along a null motion is rounding.
 constexpr double no_work = 1e-9;
 constexpr std::size_t most_named = 3;
+constexpr const char* of_sdpd = " (of \"sdpd\" fluid.form = \"classical\")";
 
 template <int D>
 double norm_of_forces(std::span<const double> load, const Share& share,
@@ -54,9 +55,9 @@ void Dynamics<D>::judge_null_motions(const Stage<D>& stage) {
     throw SolverError(
         who + why +
             ", and under shear nothing says how fast they do. Cures: mass (fluid.mass) or " +
-            transverse_cure,
+            transverse_cure + of_sdpd,
         SolverError::Cause::singular);
-  const std::string others = std::string(", mass (fluid.mass) or ") + transverse_cure;
+  const std::string others = std::string(", mass (fluid.mass) or ") + transverse_cure + of_sdpd;
   Unknowns f = force(stage);
   resistance_.scale_load(f);
   const Share share = motion_.dofs().share();

@@ -198,9 +198,11 @@ void Resistance<D>::check_rattlers(const PairNetwork<D>& network, const DofMap<D
     throw SolverError(
         fmt::format(
             "particle {} is a rattler: its {} neighbour(s) within the cutoff leave it free to move "
-            "in some direction without friction, so R is singular. Cures: a weak pairwise friction "
-            "of longer range (fluid.rattler_friction = {{ gamma = 0.1, cutoff = 2.0 }}), a higher "
-            "density, or a larger cutoff",
+            "in some direction without friction, so R is singular. Cures: a higher density, a "
+            "larger "
+            "cutoff (of \"sdpd\" fluid.support), or, where friction is DPD's, a weak pairwise one "
+            "of "
+            "longer range (fluid.rattler_friction = {{ gamma = 0.1, cutoff = 2.0 }})",
             particles.id[index(particle)], network.edges_of(particle).size()),
         SolverError::Cause::singular);
   }
@@ -256,12 +258,14 @@ void Resistance<D>::check_clusters(const DofMap<D>& dofs, const Particles<D>& pa
     for (std::size_t m = n; m < n_nodes; ++m)
       if (root(static_cast<std::int32_t>(m)) == own) ++members;
     throw SolverError(
-        fmt::format("{} particle(s), among them particle {}, are a group of particles out of reach "
-                    "of all others, which can move freely as one, so R is singular. Cures: {}, "
-                    "mass (fluid.mass), a weak pairwise friction of longer range that reaches the "
-                    "others (fluid.rattler_friction = {{ gamma = 0.1, cutoff = 2.0 }}), a higher "
-                    "density, or a larger cutoff",
-                    members, particles.id[index(dofs.particle_of(n))], drag_cure),
+        fmt::format(
+            "{} particle(s), among them particle {}, are a group of particles out of reach "
+            "of all others, which can move freely as one, so R is singular. Cures: {}, "
+            "mass (fluid.mass), a higher density, a larger cutoff (of \"sdpd\" "
+            "fluid.support), or, where friction is DPD's, a weak pairwise one of longer range "
+            "that reaches the others (fluid.rattler_friction = {{ gamma = 0.1, cutoff = 2.0 "
+            "}})",
+            members, particles.id[index(dofs.particle_of(n))], drag_cure),
         SolverError::Cause::singular);
   }
 }
