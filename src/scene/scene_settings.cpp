@@ -147,7 +147,7 @@ void make_room(SceneSettings<D>& scene) {
   const auto reference = scene.model->reference_state(scene.mass);
   const std::int64_t others = scene.body_particles() + scene.molecule_beads();
   if (!reference || reference->spacing == 0.0 || scene.count >= 0 || others == 0) return;
-  scene.count = std::llround(reference->density * scene.fluid_volume()) - others;
+  scene.count = std::llround(scene.density * scene.fluid_volume()) - others;
   if (scene.count < 1)
     throw ConfigError(
         fmt::format("no room is left for the fluid at fluid.density: bodies and molecules have {} "
