@@ -5,8 +5,10 @@
 #include <algorithm>
 
 #include "odpd/analysis/bodies.h"
+#include "odpd/analysis/contact_angle.h"
 #include "odpd/analysis/density_residual.h"
 #include "odpd/analysis/divergence.h"
+#include "odpd/analysis/drop.h"
 #include "odpd/analysis/heat.h"
 #include "odpd/analysis/modes.h"
 #include "odpd/analysis/molecules.h"
@@ -14,6 +16,7 @@
 #include "odpd/analysis/profile.h"
 #include "odpd/analysis/rdf.h"
 #include "odpd/analysis/stress.h"
+#include "odpd/analysis/surface_tension.h"
 #include "odpd/analysis/thermo.h"
 #include "odpd/analysis/velocities.h"
 #include "odpd/analysis/viscosity.h"
@@ -41,7 +44,10 @@ const std::vector<ObserverKind<D>>& observer_kinds() {
       {.name = "velocities", .make = Velocities<D>::make, .of_motion = true},
       {.name = "wave", .make = WaveAmplitude<D>::make, .of_motion = true},
       {.name = "modes", .make = Modes<D>::make, .of_motion = true},
-      {.name = "molecules", .make = MoleculeStatistics<D>::make}};
+      {.name = "molecules", .make = MoleculeStatistics<D>::make},
+      {.name = "surface-tension", .make = SurfaceTension<D>::make},
+      {.name = "drop", .make = Drop<D>::make},
+      {.name = "contact-angle", .make = ContactAngle<D>::make}};
   return table;
 }
 

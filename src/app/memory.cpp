@@ -106,7 +106,7 @@ MemoryNeed memory_need(const SceneSettings<D>& scene) {
   double in_molecules = 0.0;
   for (const MoleculeSettings<D>& m : scene.molecules)
     in_molecules += static_cast<double>(m.molecules()) * static_cast<double>(m.beads());
-  const double volume = scene.fluid_volume();
+  const double volume = scene.start_volume();
   const std::array<Part, 4> shares{
       {{file               ? static_cast<double>(scene.start_positions.size())
         : scene.count >= 0 ? static_cast<double>(scene.count)

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <new>
 #include <optional>
@@ -89,6 +90,29 @@ int conclude(const Simulation<D>& simulation, RunOutput<D>& output) {
 }
 
 template <int D>
+void warn_of_step(const Simulation<D>& simulation) {
+  const Scene<D>& scene = simulation.scene();
+  const CaseSettings& settings = simulation.settings();
+  const double dt = settings.clock.dt, mass = scene.settings().mass, kT = scene.largest_kT();
+  // Explicit conservative forces are accurate to one to two times this limit.
+  const std::optional<double> limit = scene.explicit_step_limit();
+  if (repulsion_is_explicit(settings.integrator) && limit && dt > 2.0 * *limit)
+    log_warning(fmt::format(
+        "integrator.dt = {} is beyond {:.3g}, twice the limit of explicit repulsion: it "
+        "is no longer accurate there",
+        dt, 2.0 * *limit));
+  const double path = scene.model().thermal_path();
+  if (mass > 0.0 && integrator_traits(settings.integrator.name).in_time &&
+      std::sqrt(kT / mass) * dt > path)
+    log_warning(fmt::format(
+        "integrator.dt = {}: a particle at its thermal speed sqrt(kT/m) moves by {:.3g} in a step, "
+        "more than {:.3g}, and at a free surface nothing slows it. Give dt = {:.2g} or less, or a "
+        "mass of {:.2g} or more",
+        dt, std::sqrt(kT / mass) * dt, path, path * std::sqrt(mass / kT),
+        kT * (dt / path) * (dt / path)));
+}
+
+template <int D>
 int run_in(const RunOptions& options, const Config& config, const CaseSettings& settings,
            CheckpointReader* checkpoint) {
   Simulation<D> simulation(config, settings, {}, checkpoint);
@@ -99,13 +123,7 @@ int run_in(const RunOptions& options, const Config& config, const CaseSettings& 
   }
   if (const std::string warning = simulation.integrator().warning(); !warning.empty())
     log_warning(warning);
-  // Explicit conservative forces are accurate to one to two times this limit.
-  const std::optional<double> limit = simulation.scene().explicit_step_limit();
-  if (repulsion_is_explicit(settings.integrator) && limit && settings.clock.dt > 2.0 * *limit)
-    log_warning(fmt::format(
-        "integrator.dt = {} is beyond {:.3g}, twice the limit of explicit repulsion: it "
-        "is no longer accurate there",
-        settings.clock.dt, 2.0 * *limit));
+  warn_of_step(simulation);
 
   const fs::path directory = output_directory(options, settings);
   if (checkpoint) simulation.load(*checkpoint);

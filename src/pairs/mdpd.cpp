@@ -91,6 +91,16 @@ std::optional<ReferenceState> MdpdModel<D>::reference_state(double) const {
   return s;
 }
 
+namespace {
+constexpr double longest_path = 0.03;  // in r_c
+}
+
+template <int D>
+double MdpdModel<D>::thermal_path() const {
+  return fluid_.filled ? std::numeric_limits<double>::infinity()
+                       : longest_path * table_[0].of.friction.cutoff;
+}
+
 template <int D>
 ModelParameters MdpdModel<D>::parameters() const {
   const MdpdPair& of = table_[0].of;
@@ -108,17 +118,14 @@ namespace {
 
 // What a massless scene of this fluid must not have cannot be seen from its keys, so its author says it.
 void refuse_free_surface(const FluidKeys& keys, const FrictionParameters& friction) {
-  const Config& fluid = keys.fluid;
-  const bool filled = fluid.boolean("filled", false);
-  if (keys.mass > 0.0 || filled) return;
-  fluid.fail(
+  keys.fluid.fail(
       "mass",
       fmt::format(
           "is 0: a massless drop does not resist turning, and a particle that evaporates resists "
-          "nothing, so that no step has a solution. Give a mass of at least kT (dt/(0.03 r_c))^2 = "
+          "nothing, so that no step has a solution. Give a mass of at least kT (dt/({} r_c))^2 = "
           "{:.3g} dt^2, or say filled = true where the liquid fills the box and has no free "
           "surface",
-          friction.kT / std::pow(0.03 * friction.cutoff, 2)));
+          longest_path, friction.kT / std::pow(longest_path * friction.cutoff, 2)));
 }
 
 MdpdPair read_mdpd_pair(const Config& keys, MdpdPair base, bool whole) {
@@ -143,8 +150,10 @@ MdpdPair read_mdpd_pair(const Config& keys, MdpdPair base, bool whole) {
 template <int D>
 std::shared_ptr<const PairModel<D>> read_mdpd(const FluidKeys& keys) {
   const MdpdPair fluid_pair = read_mdpd_pair(keys.fluid, MdpdPair{}, true);
-  const MdpdFluid fluid{.B = keys.fluid.non_negative("B"), .r_d = keys.fluid.positive("r_d")};
-  refuse_free_surface(keys, fluid_pair.friction);
+  const MdpdFluid fluid{.B = keys.fluid.non_negative("B"),
+                        .r_d = keys.fluid.positive("r_d"),
+                        .filled = keys.fluid.boolean("filled", false)};
+  if (keys.mass == 0.0 && !fluid.filled) refuse_free_surface(keys, fluid_pair.friction);
   const auto table = pair_table(keys, fluid_pair, [](const Config& pair, const MdpdPair& base) {
     return read_mdpd_pair(pair, base, false);
   });

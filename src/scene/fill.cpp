@@ -68,8 +68,8 @@ std::vector<Vec<D>> lattice(const Vec<D>& low, const Vec<D>& high, std::int64_t 
 }
 
 template <int D>
-std::vector<Vec<D>> random_points(std::uint64_t seed, const Box<D>& box, const Vec<D>& low,
-                                  const Vec<D>& high, std::int64_t count,
+std::vector<Vec<D>> random_points(std::uint64_t seed, const Box<D>& box,
+                                  const StartRegion<D>& region, std::int64_t count,
                                   const Particles<D>& particles) {
   constexpr std::uint64_t most_attempts = 1000;
   const CounterRandom random(seed, Stream::start_positions);
@@ -79,11 +79,12 @@ std::vector<Vec<D>> random_points(std::uint64_t seed, const Box<D>& box, const V
     Vec<D>& point = points[index(k)];
     for (std::uint64_t attempt = 0; attempt < most_attempts; ++attempt) {
       const auto u = random.uniforms(0, attempt, static_cast<std::uint64_t>(k), 0);
-      for (int c = 0; c < D; ++c) point[c] = low[c] + (high[c] - low[c]) * u[index(c)];
-      if (!bodies.overlaps(point, 0.0)) break;
+      for (int c = 0; c < D; ++c)
+        point[c] = region.from[c] + (region.to[c] - region.from[c]) * u[index(c)];
+      if (region.holds(point) && !bodies.overlaps(point, 0.0)) break;
       if (attempt + 1 == most_attempts)
         throw ConfigError(
-            "no room was found for the fluid: the bodies fill the space between the walls");
+            "no room was found for the fluid: the bodies fill the space where it starts");
     }
   }
   return points;
@@ -191,7 +192,8 @@ void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<
                  Particles<D>& particles) {
   std::vector<Vec<D>> points;
   std::vector<std::int32_t> species = settings.start_species;
-  const double volume = Box<D>{high - low, {}}.volume();
+  const StartRegion<D> region = settings.start_region.value_or(StartRegion<D>{low, high});
+  const double volume = region.volume();
   std::int64_t fluid = 0;
   if (settings.start == StartKind::file) {
     check_start_positions(settings);
@@ -222,8 +224,8 @@ void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<
           "\"random\", "
           "which keeps out of them, or \"file\"");
     points = settings.start == StartKind::lattice
-                 ? lattice(low, high, count)
-                 : random_points(settings.seed, settings.box, low, high, count, particles);
+                 ? lattice(region.from, region.to, count)
+                 : random_points(settings.seed, settings.box, region, count, particles);
   }
   if (settings.start != StartKind::file) fluid = static_cast<std::int64_t>(points.size());
   const bool given = !species.empty();

@@ -116,7 +116,7 @@ std::vector<FluidKeys::Pair> read_pairs(const Config& config,
   return pairs;
 }
 
-// Needs the walls, as the volume between them turns a count into a density.
+// Needs the walls and the start, as the volume of the fluid turns a count into a density.
 template <int D>
 void read_fluid(const Config& config, const std::optional<Calibration>& calibration,
                 SceneSettings<D>& scene) {
@@ -124,7 +124,7 @@ void read_fluid(const Config& config, const std::optional<Calibration>& calibrat
   read_amount(fluid, scene);
   // Without a solvent the beads are the fluid.
   const std::int64_t counted = scene.count == 0 ? scene.molecule_beads() : scene.count;
-  const double density = counted > 0 ? static_cast<double>(counted) / scene.fluid_volume()
+  const double density = counted > 0 ? static_cast<double>(counted) / scene.start_volume()
                          : scene.start == StartKind::file ? scene.start_density
                                                           : scene.density;
   const bool amount = fluid.has("density") || fluid.has("count");
@@ -136,7 +136,7 @@ void read_fluid(const Config& config, const std::optional<Calibration>& calibrat
                                     .pairs = read_pairs(config, scene.species),
                                     .species = scene.species.size(),
                                     .density = density,
-                                    .others = static_cast<double>(others) / scene.fluid_volume(),
+                                    .others = static_cast<double>(others) / scene.start_volume(),
                                     .mass = scene.mass,
                                     .calibration = calibration});
 }
@@ -147,11 +147,11 @@ void make_room(SceneSettings<D>& scene) {
   const auto reference = scene.model->reference_state(scene.mass);
   const std::int64_t others = scene.body_particles() + scene.molecule_beads();
   if (!reference || reference->spacing == 0.0 || scene.count >= 0 || others == 0) return;
-  scene.count = std::llround(scene.density * scene.fluid_volume()) - others;
+  scene.count = std::llround(scene.density * scene.start_volume()) - others;
   if (scene.count < 1)
     throw ConfigError(
         fmt::format("no room is left for the fluid at fluid.density: bodies and molecules have {} "
-                    "particles, the space between the walls has "
+                    "particles, the space where it starts has "
                     "room for {}: use a larger box",
                     others, scene.count + others));
 }
@@ -187,6 +187,16 @@ void read_start(const Config& config, SceneSettings<D>& scene) {
                         (scene.start == StartKind::lattice && !config.tables("molecule").empty());
   scene.relax_sweeps = start.integer("relax_sweeps", overlaps ? 100 : 0);
   if (scene.relax_sweeps < 0) start.fail("relax_sweeps", "must be zero or positive");
+}
+
+// Between the walls, so it needs these.
+template <int D>
+void read_place(const Config& start, SceneSettings<D>& scene) {
+  if (!start.has("region")) return;
+  const Config region = start.table("region");
+  scene.start_region = read_start_region<D>(region, scene.fluid_low(), scene.fluid_high());
+  if (scene.start == StartKind::lattice && scene.start_region->radius > 0.0)
+    region.fail("radius", "a lattice fills blocks: give from and to, or start.from = \"random\"");
 }
 
 }  // namespace
@@ -298,6 +308,11 @@ double SceneSettings<D>::fluid_volume() const {
 }
 
 template <int D>
+double SceneSettings<D>::start_volume() const {
+  return start_region ? start_region->volume() : fluid_volume();
+}
+
+template <int D>
 SceneSettings<D> read_scene_settings(const Config& config,
                                      const std::optional<Calibration>& calibration) {
   SceneSettings<D> scene;
@@ -308,6 +323,7 @@ SceneSettings<D> read_scene_settings(const Config& config,
   scene.species = read_species(config);
   read_start(config, scene);
   read_walls(config, scene);
+  read_place(config.table("start"), scene);
   for (const Config& entry : config.tables("body")) {
     scene.bodies.push_back(read_body<D>(entry, scene.box));
     const std::string& name = scene.bodies.back().name;

@@ -184,10 +184,16 @@ void expect_named_and_continued(const odpd::SceneSettings<2>& settings,
 TEST(EveryKind, NamesWhatItGivesAndContinues) {
   std::vector<std::string> keys;
   for (const ObserverKind<2>& kind : odpd::observer_kinds<2>())
-    if (kind.name != "modes" && kind.name != "velocities" && kind.name != "wave")
+    if (const std::vector<std::string> others{"modes", "velocities", "wave", "surface-tension",
+                                              "drop"};
+        std::find(others.begin(), others.end(), kind.name) == others.end())
       keys.push_back("kind = \"" + kind.name + "\"\n");
   expect_named_and_continued(everything(), keys);
   expect_named_and_continued(everything(1.0), {"kind = \"velocities\"\n"});
+  odpd::SceneSettings<2> plain = at_rest();
+  plain.bodies.clear();
+  expect_named_and_continued(
+      plain, {"kind = \"surface-tension\"\n", "kind = \"drop\"\ncore = 1.0\nevery = 2\n"});
   const std::string modes = "kind = \"modes\"\nnumbers = [1, 3]\nwindow = 0.6\n";
   expect_named_and_continued(at_rest(), {modes, modes + "control = true\n",
                                          modes + "control = true\ncontrol_every = 3\n"});

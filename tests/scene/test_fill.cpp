@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <set>
 
 #include "cases.h"
@@ -212,6 +213,46 @@ TEST(Fill, StartPositionsMustLieInTheBox) {
     s.start_positions[1] = {{4.0, y}};
     expect_error<ConfigError>([&] { Scene<2>{s}; }, {"points.txt", "particle 1", "from 0 to 12"});
   }
+}
+
+// Density is then that of the region; a block may be a lattice.
+TEST(Fill, FluidStartsInItsRegion) {
+  const std::string start = std::string(periodic) + "[start]\nrelax_sweeps = 0\nregion = ";
+  const Vec<3> centre{{1.5, 2.0, 3.0}};
+  const SceneSettings<3> ball = settings<3>(start + "{ centre = [1.5, 2.0, 3.0], radius = 1.4 }\n");
+  EXPECT_NEAR(ball.start_volume(), 4.0 / 3.0 * std::numbers::pi * std::pow(1.4, 3), 1e-12);
+  const Scene<3> drop(ball);
+  EXPECT_EQ(count_group(drop, Group()), 34);  // 3 times 11.5
+  double farthest = 0.0;
+  for (const Vec<3>& r : drop.particles().position) farthest = std::max(farthest, norm(r - centre));
+  EXPECT_LT(farthest, 1.4);
+  EXPECT_GT(farthest, 1.2);
+  for (const char* from : {"random", "lattice"}) {
+    SceneSettings<3> s = settings<3>(start + "{ from = [0.0, 0.0, 1.0], to = [3.0, 4.0, 2.0] }\n" +
+                                     "from = \"" + from + "\"\n");
+    const Scene<3> slab(s);
+    EXPECT_EQ(count_group(slab, Group()), 36);
+    for (const Vec<3>& r : slab.particles().position) EXPECT_TRUE(r[2] >= 1.0 && r[2] < 2.0);
+    // A frame of a run: the region only says what volume `density` is of.
+    s.start = StartKind::file;
+    s.start_density = 3.0;
+    s.start_positions.assign(36, {{1.0, 1.0, 4.5}});
+    EXPECT_EQ(Scene<3>(s).particles().position[0][2], 4.5);
+  }
+}
+
+TEST(Fill, ARegionLiesBetweenTheWalls) {
+  const std::string start = std::string(channel) + "[start]\nregion = ";
+  const auto refuses = [&](const std::string& region, std::initializer_list<const char*> parts) {
+    expect_error<ConfigError>([&] { settings<2>(start + region + "\n"); }, parts);
+  };
+  refuses("{ from = [0.0, 0.5], to = [2.0, 3.0] }",
+          {"case.toml:", "start.region.from", "along y", "1 to 11"});
+  refuses("{ from = [0.0, 1.5], to = [2.0, 11.5] }", {"start.region.to", "11.5 along y"});
+  refuses("{ centre = [5.0, 4.0], radius = 3.5 }", {"start.region.radius", "0.5 to 7.5"});
+  refuses("{ from = [3.0, 4.0], to = [2.0, 5.0] }", {"start.region.to", "along x", "above from"});
+  refuses("{ centre = [5.0, 4.0], from = [1.0, 1.0] }", {"start.region.from", "radius"});
+  refuses("{ centre = [5.0, 4.0], radius = 1.5 }\nfrom = \"lattice\"", {"radius", "lattice"});
 }
 
 TEST(Fill, ABoxBelowTwoCutoffsIsRefused) {

@@ -74,6 +74,7 @@ class BondedModel : public PairModel<D> {
   std::optional<ReferenceState> reference_state(double mass) const override {
     return pairs_->reference_state(mass);
   }
+  double thermal_path() const override { return pairs_->thermal_path(); }
   bool conservative() const override { return pairs_->conservative() || !bonds_.empty(); }
   bool thermal() const override { return pairs_->thermal(); }
   double bonded_energy(std::size_t i, const Vec<D>& r, const Box<D>& box,

@@ -27,6 +27,8 @@ struct MdpdPair {
 struct MdpdFluid {
   double B = 25.0;    ///< force length^d
   double r_d = 0.75;  ///< length
+  /// It fills the box and has no free surface.
+  bool filled = false;
 };
 
 class MdpdDensities final : public Densities {
@@ -69,6 +71,8 @@ class MdpdModel : public PairModel<D> {
                    const Particles<D>& particles, PairNetwork<D>& network) const override;
   const Densities* densities() const override { return &densities_; }
   std::optional<ReferenceState> reference_state(double mass) const override;
+  /// 0.03 r_c of the fluid: where a particle leaves the liquid friction does not slow it, and larger steps let drops evaporate.
+  double thermal_path() const override;
   bool conservative() const override { return true; }
   bool thermal() const override { return thermal_; }
   ModelParameters parameters() const override;

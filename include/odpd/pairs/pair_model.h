@@ -10,6 +10,7 @@
 //   the force, so motion samples what Monte Carlo samples, which takes u alone.
 //   Where the model has no numbers, u is infinite: trial moves do not go there, and refuse_unknown ends a stage that does. Nothing is
 //   ever not a number.
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -73,6 +74,9 @@ class PairModel {
   virtual std::optional<ReferenceState> reference_state(double /*mass*/) const {
     return std::nullopt;
   }
+  /// How far a particle may come at its thermal speed in one step, sqrt(kT/m) dt (length): a larger step is warned of. Infinite where
+  /// repulsion and friction alone limit steps.
+  virtual double thermal_path() const { return std::numeric_limits<double>::infinity(); }
   /// Some pair has a conservative force; otherwise energy and pressure are those of an ideal gas.
   virtual bool conservative() const = 0;
   /// Some pair has kT > 0.

@@ -19,7 +19,8 @@ BallCells<D> balls_of_bodies(const Box<D>& box, const Particles<D>& particles);
 template <int D>
 void place_walls(const SceneSettings<D>& settings, Particles<D>& particles);
 
-/// Adds the free particles between `low` and `high`, or those of the start file, among them the beads of molecules.
+/// Adds the free particles in the region of the start, or without one between `low` and `high`; or those of the start file, among them
+/// the beads of molecules.
 template <int D>
 void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<D>& high,
                  Particles<D>& particles);

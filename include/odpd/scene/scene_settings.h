@@ -13,6 +13,7 @@
 #include "odpd/scene/bodies.h"
 #include "odpd/scene/flow_wave.h"
 #include "odpd/scene/molecules.h"
+#include "odpd/scene/start_region.h"
 
 namespace odpd {
 
@@ -60,7 +61,7 @@ struct SceneSettings {
   /// Of all pairs of species; a library user may give one of their own.
   std::shared_ptr<const PairModel<D>> model = default_pair_model<D>();
   std::int64_t count = -1;  ///< fluid particles; -1: by density
-  double density = 4.0;     ///< fluid particles per volume between the walls; not used with count
+  double density = 4.0;  ///< fluid particles per volume where the fluid starts; not used with count
   double start_density = 0.0;  ///< what the start file must hold, where there is no count; 0: any
   double mass = 0.0;           ///< of every fluid particle
   double zeta_0 = 0.0;         ///< uniform drag on every fluid particle (mass/time)
@@ -75,7 +76,9 @@ struct SceneSettings {
   FlowWave force_wave;  ///< number 0: the force is uniform
   std::vector<ForceRegion<D>> force_regions;
   StartKind start = StartKind::random;
-  std::string start_file;                     ///< for StartKind::file, resolved
+  std::optional<StartRegion<D>>
+      start_region;        ///< where the fluid starts; none: all between the walls
+  std::string start_file;  ///< for StartKind::file, resolved
   std::optional<std::int64_t> first_species;  ///< number of the first species in it, where given
   std::vector<Vec<D>> start_positions;        ///< contents of the start file, filled by io's caller
   std::vector<std::int32_t> start_species;    ///< one per start position
@@ -107,6 +110,8 @@ struct SceneSettings {
   Vec<D> fluid_low() const;
   Vec<D> fluid_high() const;
   double fluid_volume() const;
+  /// Of the region in which the fluid starts, and which `density` is of.
+  double start_volume() const;
 };
 
 /// Reads [box], [fluid], [[species]], [[pair]], [[wall]], [[body]], [[molecule]], [bonds], [shear], [body_force], [start] and `seed`. Throws ConfigError for
