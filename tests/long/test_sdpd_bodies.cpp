@@ -45,11 +45,11 @@ TEST(LongSdpdBodies, ADiskOfTwoSupportsTurnsAtHalfTheRateInTheCentralFormOnly) {
          "body=[{name=\"disk\", shape=\"disk\", radius=6.0, rings=6, positions=[{at=[18.0, "
          "18.0]}]}]",
          "observe=[{kind=\"bodies\"}]"});
-    Scalar turn = *results.find("bodies.disk.angular_velocity");
-    turn.mean /= 0.03;
-    turn.standard_error /= 0.03;
-    std::printf("%s: %.4f(%.4f) of the rate\n", form.c_str(), turn.mean, turn.standard_error);
-    return turn;
+    Scalar speed = *results.find("bodies.disk.angular_velocity");
+    speed.mean /= 0.03;
+    speed.standard_error /= 0.03;
+    std::printf("%s: %.4f(%.4f) of the rate\n", form.c_str(), speed.mean, speed.standard_error);
+    return speed;
   };
   const Scalar central = turn("central", 0.3), classical = turn("classical", 0.2);
   EXPECT_LT(central.standard_error, 0.01);
