@@ -14,8 +14,8 @@ namespace odpd {
 struct ContactAngleSettings {
   std::size_t wall = 0;  ///< of the scene's
   double density = 1.0;  ///< of the liquid (1/length^d)
-  double offset =
-      0.0;  ///< of the plane on which the cap sits from the wall's surface, into the fluid (length)
+  /// Of the plane on which the cap sits from the wall's surface, into the fluid (length).
+  double offset = 0.0;
 };
 
 /// Height of a cap's centre over (its volume)^(1/d), at a contact angle in (0, pi].
