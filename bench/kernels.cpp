@@ -1,5 +1,6 @@
 // Kernels of a massless step, on equilibrated-like random fluids (n = 4, standard parameters): ns per particle.
 //   build/release/bench/odpd_bench --benchmark_filter=Apply
+// ModelEdges: a whole set of edges of one model and the sum of their forces, ns per particle and neighbour.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -15,8 +16,9 @@ namespace {
 
 template <int D>
 struct Fluid {
-  explicit Fluid(std::int64_t particles)
-      : scene(settings(particles)),
+  explicit Fluid(std::int64_t particles) : Fluid(settings(particles)) {}
+  explicit Fluid(SceneSettings<D> settings)
+      : scene(std::move(settings)),
         list(scene.box(), scene.model().cutoff(), 0.0),
         dofs(scene.particles()),
         resistance(scene.box()) {
@@ -48,6 +50,29 @@ struct Fluid {
   Resistance<D> resistance;
 };
 
+const char* const model_names[] = {"dpd", "sdpd", "sdpd, classical", "mdpd"};
+
+/// A periodic fluid of the model: DPD's of n = 4, SDPD of the usual 27 neighbours in 2D and 112 in 3D, many-body DPD at the density that has no
+/// pressure.
+template <int D>
+SceneSettings<D> model_settings(int model, std::int64_t particles) {
+  const char* const sdpd =
+      "model = \"sdpd\"\ndensity = 1.0\nkT = 0.01\neta = 1.0\nbulk_modulus = 1.0\n";
+  const std::string mdpd =
+      "model = \"mdpd\"\nkT = 1.0\nA = -40.0\nB = 25.0\nr_d = 0.75\ngamma = 4.5\nfilled = true\n";
+  const std::string fluid[] = {"density = 4.0\nkT = 1.0\na = 18.5\ngamma = 4.5\n", sdpd,
+                               std::string(sdpd) + "form = \"classical\"\n",
+                               mdpd + (D == 2 ? "density = 4.14\n" : "density = 6.08\n")};
+  const double density[] = {4.0, 1.0, 1.0, D == 2 ? 4.14 : 6.08};
+  const std::string edge =
+      std::to_string(std::pow(static_cast<double>(particles) / density[model], 1.0 / D));
+  const std::string third = D == 3 ? ", " + edge : "", also = D == 3 ? ", true" : "";
+  return read_scene_settings<D>(Config::from_text(
+      "dimension = " + std::to_string(D) + "\n[box]\nsize = [" + edge + ", " + edge + third +
+          "]\nperiodic = [true, true" + also + "]\n[fluid]\n" + fluid[model],
+      "model.toml"));
+}
+
 /// Made once: to relax a large one takes longer than to measure it.
 template <int D>
 Fluid<D>& fluid_of(std::int64_t particles) {
@@ -73,6 +98,24 @@ void Edges(benchmark::State& state) {
   Fluid<D>& fluid = fluid_of<D>(state.range(0));
   for (auto _ : state) fluid.edges();
   per_particle(state);
+}
+
+template <int D>
+void ModelEdges(benchmark::State& state) {
+  static std::map<std::pair<int, std::int64_t>, Fluid<D>> made;
+  const auto model = static_cast<int>(state.range(1));
+  Fluid<D>& fluid =
+      made.try_emplace({model, state.range(0)}, model_settings<D>(model, state.range(0)))
+          .first->second;
+  std::vector<Vec<D>> force(static_cast<std::size_t>(fluid.network.particles));
+  for (auto _ : state) {
+    fluid.edges();
+    add_conservative_forces<D>(fluid.network, force);
+  }
+  state.SetLabel(model_names[model]);
+  state.counters["ns/neighbour"] = benchmark::Counter(
+      2e-9 * static_cast<double>(fluid.network.size()),
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 template <int D>
@@ -138,6 +181,8 @@ BENCHMARK(PairSearch<2>)->Arg(540)->Arg(10000)->Arg(100000);
 BENCHMARK(PairSearch<3>)->Arg(540)->Arg(10000)->Arg(100000);
 BENCHMARK(Edges<2>)->Arg(540)->Arg(10000)->Arg(100000);
 BENCHMARK(Edges<3>)->Arg(540)->Arg(10000)->Arg(100000);
+BENCHMARK(ModelEdges<2>)->ArgsProduct({{10000}, {0, 1, 2, 3}});
+BENCHMARK(ModelEdges<3>)->ArgsProduct({{10000}, {0, 1, 2, 3}});
 BENCHMARK(Noise<2>)->Arg(10000)->Arg(100000);
 BENCHMARK(EdgeForces<2>)->Arg(10000)->Arg(100000);
 BENCHMARK(ConservativeForces<2>)->Arg(10000)->Arg(100000);

@@ -20,6 +20,7 @@ struct Options {
   double limit_seconds = 0.0;         ///< a solve that is predicted to take longer is skipped
   double limit_gigabytes = 16.0;      ///< likewise for the memory of a backend
   std::vector<std::string> backends;  ///< names; empty: all
+  std::string scenes;                 ///< of --robustness: a part of their names; empty: all
   bool quick = false;
   bool fresh = false;
 

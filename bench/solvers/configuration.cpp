@@ -11,6 +11,7 @@
 #include "odpd/core/timer.h"
 #include "odpd/dynamics/integrator.h"
 #include "odpd/pairs/dpd.h"
+#include "odpd/pairs/sdpd.h"
 #include "odpd/scene/fill.h"
 
 namespace bench {
@@ -80,6 +81,18 @@ std::int64_t parts_of(const FluidSpec& spec) {
   return 1;
 }
 
+/// SDPD with kappa = 100 and K dt/eta = 0.2.
+template <int D>
+std::shared_ptr<const odpd::PairModel<D>> sdpd_model(const FluidSpec& spec) {
+  const double K = 100.0 * spec.density, eta = 5.0 * K * time_step;
+  const auto friction =
+      spec.classical ? odpd::SdpdFriction::classical(eta, D) : odpd::SdpdFriction::central(eta, D);
+  return std::make_shared<const odpd::SdpdModel<D>>(
+      odpd::SdpdParameters{.state = {.d_0 = spec.density, .modulus = K, .background = K},
+                           .support = spec.support * std::pow(spec.density, -1.0 / D)},
+      1, std::vector{friction});
+}
+
 /// The scene without particles' positions: the base box, or all copies of it.
 template <int D>
 odpd::SceneSettings<D> scene_settings(const FluidSpec& spec, bool whole) {
@@ -90,7 +103,7 @@ odpd::SceneSettings<D> scene_settings(const FluidSpec& spec, bool whole) {
     p.gamma_far = 0.1;
     p.cutoff_far = 1.5;
   }
-  s.model = odpd::make_dpd<D>(p);
+  s.model = spec.support > 0.0 ? sdpd_model<D>(spec) : odpd::make_dpd<D>(p);
   s.box.periodic.fill(true);
   const int directions = spec.walls ? D - 1 : D;
   const std::int64_t parts = parts_of<D>(spec), in = whole ? 1 : parts, of = parts / in;

@@ -1,6 +1,6 @@
 #pragma once
 // Configurations and right-hand sides for the solver benchmark: the standard fluid (a = 18.5, gamma = 4.5, s = 1/2, kT = 1,
-// dt = 0.005) between walls or periodic, with or without rigid bodies, in equilibrium or a periodic replica of a smaller box
+// dt = 0.005) or one of SDPD between walls or periodic, with or without rigid bodies, in equilibrium or a periodic replica of a smaller box
 // that is.
 #include <cstdint>
 #include <memory>
@@ -24,6 +24,8 @@ struct FluidSpec {
   std::int64_t particles = 540;  ///< those that move: free ones and sites of bodies
   double density = 4.0;          ///< of the free ones (1/length^d)
   double s = 0.5;                ///< exponent of w_D
+  double support = 0.0;          ///< of SDPD's kernel in spacings; 0: DPD
+  bool classical = false;        ///< SDPD's form with friction across lines of centres
   double thin = 0.0;             ///< length of direction 0; 0: a square or cube
   bool gap = false;              ///< a third of the box is empty: half its length is added
   bool far_friction = false;     ///< gamma_far = 0.1 to 1.5 cutoffs

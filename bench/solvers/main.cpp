@@ -57,6 +57,8 @@ void declare(CLI::App& app, CommandLine& line) {
                "rigid bodies against a fluid of as many particles: suspension*.csv, .md, charts")
       ->excludes(robustness)
       ->excludes(ageing);
+  app.add_option("--scenes", o.scenes, "of --robustness: those with this in their names [all]")
+      ->needs(robustness);
   app.add_flag("--quick", o.quick,
                "sizes 540 and 10000 only (--robustness, --ageing: 540; --suspension: 10000)");
   app.add_flag("--fresh", o.fresh, "forget the rows that --out holds of this part");

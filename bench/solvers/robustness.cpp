@@ -1,5 +1,5 @@
 // Iterations to 1e-7 where solvers may fail: other densities and friction weights, obstacles, gaps, stiff bonds, shifts,
-// rattlers, thin boxes.
+// rattlers, thin boxes, SDPD.
 #include <fmt/format.h>
 
 #include <functional>
@@ -25,11 +25,14 @@ using Change = std::function<void(Problem<D>&)>;
 template <int D>
 class Robustness {
  public:
-  Robustness(std::int64_t particles, Results& results) : particles_(particles), results_(results) {}
+  /// `scenes`: a part of the names of those that are wanted.
+  Robustness(std::int64_t particles, std::string scenes, Results& results)
+      : particles_(particles), scenes_(std::move(scenes)), results_(results) {}
   void run();
 
  private:
   void fluids(bool walls);
+  void sdpd(bool walls);
   void obstacles();
   void gaps(bool walls);
   void bonds(bool walls);
@@ -41,18 +44,20 @@ class Robustness {
   const Start<D>& start(const FluidSpec& spec);
 
   std::int64_t particles_;
+  std::string scenes_;
   Results& results_;
-  std::map<std::tuple<bool, double, double>, Start<D>> starts_;
+  std::map<std::tuple<bool, double, double, double>, Start<D>> starts_;
 };
 
 /// Positions do not depend on friction: one start per density and box.
 template <int D>
 const Start<D>& Robustness<D>::start(const FluidSpec& spec) {
-  auto& made = starts_[{spec.walls, spec.density, spec.thin}];
+  auto& made = starts_[{spec.walls, spec.density, spec.thin, spec.support}];
   if (made.empty())
     made = equilibrated<D>({.walls = spec.walls,
                             .particles = spec.particles,
                             .density = spec.density,
+                            .support = spec.support,
                             .thin = spec.thin});
   return made;
 }
@@ -73,6 +78,7 @@ std::vector<std::string> Robustness<D>::solved(const Backend& backend, Problem<D
 template <int D>
 void Robustness<D>::solve(const std::string& scene, const FluidSpec& spec,
                           const Change<D>& change) {
+  if (scene.find(scenes_) == std::string::npos) return;
   for (const Backend& backend : own_backends()) {
     std::vector<std::string> row{scene, std::to_string(D), spec.geometry(),
                                  std::to_string(spec.particles), backend.name};
@@ -100,6 +106,16 @@ void Robustness<D>::fluids(bool walls) {
     for (const double s : {0.5, 1.0, 2.0})
       solve(fmt::format("fluid n = {:g}; s = {:g}", density, s),
             {.walls = walls, .particles = particles_, .density = density, .s = s});
+}
+
+template <int D>
+void Robustness<D>::sdpd(bool walls) {
+  for (const double support : {2.5, 3.0, 4.0})
+    for (const bool classical : {false, true})
+      if (D == 2 || support < 4.0)
+        solve(
+            fmt::format("sdpd h = {:g}; {}", support, classical ? "classical" : "central"),
+            {.walls = walls, .particles = particles_, .support = support, .classical = classical});
 }
 
 template <int D>
@@ -146,6 +162,7 @@ template <int D>
 void Robustness<D>::run() {
   for (const bool walls : {false, true}) {
     fluids(walls);
+    sdpd(walls);
     if (!walls) obstacles();
     gaps(walls);
     bonds(walls);
@@ -168,8 +185,8 @@ void run_robustness(const Options& options) {
   Results results = robustness_results(options.out);
   for (const std::int64_t size : options.sizes) {
     odpd::set_threads(options.threads, size);
-    Robustness<2>(size, results).run();
-    Robustness<3>(size, results).run();
+    Robustness<2>(size, options.scenes, results).run();
+    Robustness<3>(size, options.scenes, results).run();
   }
   std::string text =
       table_head("Iterations to a true residual of 1e-7 in scenes that are not the benchmark's");

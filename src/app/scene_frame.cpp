@@ -11,7 +11,7 @@ std::vector<std::int64_t> bond_ends(const std::vector<Bond>& bonds) {
 }
 
 template <int D>
-Frame scene_frame(const Scene<D>& scene, const Clock& clock) {
+Frame scene_frame(const Scene<D>& scene, const Clock& clock, std::span<const double> density) {
   const Particles<D>& particles = scene.particles();
   Frame frame;
   frame.dimension = D;
@@ -33,6 +33,7 @@ Frame scene_frame(const Scene<D>& scene, const Clock& clock) {
     frame.id.push_back(particles.id[i]);
     frame.species.push_back(particles.species[i]);
     frame.group.push_back(particles.group[i].code());
+    if (!density.empty()) frame.density.push_back(density[i]);
     for (std::size_t c = 0; c < D; ++c) {
       frame.position.push_back(particles.position[i].x[c]);
       frame.image.push_back(particles.image[i][c]);
@@ -42,7 +43,7 @@ Frame scene_frame(const Scene<D>& scene, const Clock& clock) {
   return frame;
 }
 
-template Frame scene_frame<2>(const Scene<2>&, const Clock&);
-template Frame scene_frame<3>(const Scene<3>&, const Clock&);
+template Frame scene_frame<2>(const Scene<2>&, const Clock&, std::span<const double>);
+template Frame scene_frame<3>(const Scene<3>&, const Clock&, std::span<const double>);
 
 }  // namespace odpd

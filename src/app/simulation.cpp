@@ -177,6 +177,13 @@ void Simulation<D>::judge() {
       fastest);
 }
 
+template <int D>
+Frame Simulation<D>::frame() {
+  if (scene_.model().densities() == nullptr) return scene_frame(scene_, clock_);
+  judge();
+  return scene_frame<D>(scene_, clock_, judged().network.densities.d);
+}
+
 // Looked at 16 to 32 times per doubling of the measured steps: a matter of their number alone.
 template <int D>
 void Simulation<D>::stop_at_target() {

@@ -94,6 +94,7 @@ void TrajectorySegments::open(const Frame& frame) {
   create_element(*image_, group + "/position", vectors, false);
   create_element(*image_, group + "/image", vectors, true);
   create_element(*image_, group + "/velocity", vectors, false);
+  if (!frame.density.empty()) create_element(*image_, group + "/density", {count}, false);
   image_->write(group + "/id", frame.id, {count});
   image_->write(group + "/species", frame.species, {count});
   image_->write(group + "/group", frame.group, {count});
@@ -122,6 +123,7 @@ void TrajectorySegments::append(const Frame& frame) {
   image_->append_row(group + "/position/value", frame.position);
   image_->append_row(group + "/image/value", frame.image);
   image_->append_row(group + "/velocity/value", frame.velocity);
+  if (!frame.density.empty()) image_->append_row(group + "/density/value", frame.density);
   image_->append_row(group + "/box/edges/value", edge_vectors(frame));
   ++frames_;
 }
@@ -151,9 +153,11 @@ void TrajectorySegments::reopen(std::int64_t segment, std::int64_t frames) {
   if (frames == 0) return;
   const fs::path file = directory_ / segment_name(segment);
   image_ = std::make_unique<H5Image>(file);
+  std::vector<const char*> columns{"position/step", "position/time",  "position/value",
+                                   "image/value",   "velocity/value", "box/edges/value"};
+  if (H5Reader(file).has(fmt::format("{}/density", all))) columns.push_back("density/value");
   // A later part may have written more of it.
-  for (const char* rows : {"position/step", "position/time", "position/value", "image/value",
-                           "velocity/value", "box/edges/value"}) {
+  for (const char* rows : columns) {
     const std::string path = fmt::format("{}/{}", all, rows);
     if (const std::int64_t there = image_->rows(path); there < frames)
       throw IoError(fmt::format(

@@ -38,6 +38,12 @@ void put_vectors(Text& text, std::string_view name, const std::vector<double>& v
   put(text, "</DataArray>\n");
 }
 
+void put_numbers(Text& text, std::string_view name, const std::vector<double>& values) {
+  if (values.empty()) return;
+  put(text, "<DataArray type=\"Float64\" Name=\"{}\" format=\"ascii\">\n{}\n</DataArray>\n", name,
+      fmt::join(values, " "));
+}
+
 void put_integers(Text& text, std::string_view name, const std::vector<std::int64_t>& values) {
   if (values.empty()) return;
   put(text, "<DataArray type=\"Int64\" Name=\"{}\" format=\"ascii\">\n{}\n</DataArray>\n", name,
@@ -103,6 +109,7 @@ void write_vtp(const std::filesystem::path& file, const Frame& frame) {
   put_vertices(text, count);
   put(text, "<PointData>\n");
   if (!frame.velocity.empty()) put_vectors(text, "velocity", frame.velocity, dimension);
+  put_numbers(text, "density", frame.density);
   put_integers(text, "id", frame.id);
   put_integers(text, "species", frame.species);
   put_integers(text, "group", frame.group);

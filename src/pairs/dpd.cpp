@@ -96,6 +96,7 @@ void DpdModel<D>::write_edges(const PairList<D>& list, const Box<D>& box,
                {from_begin(n.u), &n.f_c[begin], from_begin(n.k_c), &n.zeta_par[begin],
                 from_begin(n.zeta_perp)});
   };
+  network.densities.resize(0, 0);
   write_edge_geometry<D>(list, cutoff_, box, positions, particles, fill, network);
 }
 

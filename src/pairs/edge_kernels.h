@@ -20,6 +20,18 @@ struct DpdColumns {
   double *u, *f_c, *k_c, *zeta_par, *zeta_perp;
 };
 
+/// W(r) of a density sum: the shapes of SmoothingKernel in their order, and s (1 - q)^2.
+enum class WeightShape { wendland_c2, wendland_c4, lucy, quintic, square };
+struct WeightParameters {
+  WeightShape shape;
+  double scale, support;  ///< s, h
+};
+
+/// Columns of W, W', W'' and -W'/r. Those that are null are not wanted.
+struct WeightColumns {
+  double *W, *W_1, *W_2, *slope;
+};
+
 struct EdgeKernels {
   /// Differences d[c][k] of positions become those of nearest images, square[k] their squared lengths.
   void (*separations)(int dimensions, const Images& images, int n, double* const* d,
@@ -30,6 +42,8 @@ struct EdgeKernels {
                     double reach2, double* e, double* r, int* overlaps);
   void (*dpd)(const DpdKernelParameters& parameters, int n, const double* r,
               const DpdColumns& columns);
+  void (*weights)(const WeightParameters& parameters, int n, const double* r,
+                  const WeightColumns& columns);
   /// force[dimensions k + c] = sqrt(strength zeta[k]) w[k] e[dimensions k + c]; w is a buffer, the others are columns.
   void (*noise)(int dimensions, double strength, int n, const double* zeta, const double* w,
                 const double* e, double* force);

@@ -8,7 +8,6 @@
 #include "odpd/core/isa.h"
 #include "odpd/core/parallel.h"
 #include "odpd/pairs/density_writer.h"
-#include "odpd/pairs/edge_loop.h"
 
 namespace odpd {
 
@@ -72,7 +71,6 @@ class Writer {
     }
     network_.particles = list.rows();
     network_.first.resize(index(list.rows()) + 1);
-    network_.densities.resize(0, 0);
   }
 
   void write() {
@@ -227,25 +225,13 @@ void write_rigid_geometry(const PairList<D>& list, double cutoff, const Box<D>& 
   Writer<D>(list, cutoff, box, positions, particles, nothing, network, Pairs::rigid).write();
 }
 
-template <int D>
-void add_to_ends(const PairNetwork<D>& network, std::span<const double> value,
-                 std::vector<double>& sum) {
-  for_each_owned_edge(
-      network, [&](std::size_t p, std::size_t k) { sum[p] += value[k]; },
-      [&](std::size_t p, std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) sum[p] += value[k];
-      });
-}
-
 #define ODPD_INSTANTIATE(D)                                                                    \
   template void write_edge_geometry<D>(                                                        \
       const PairList<D>&, double, const Box<D>&, std::span<const Vec<D>>, const Particles<D>&, \
       const std::function<void(PairNetwork<D>&, std::size_t, std::size_t)>&, PairNetwork<D>&); \
   template void write_rigid_geometry<D>(const PairList<D>&, double, const Box<D>&,             \
                                         std::span<const Vec<D>>, const Particles<D>&,          \
-                                        PairNetwork<D>&);                                      \
-  template void add_to_ends<D>(const PairNetwork<D>&, std::span<const double>,                 \
-                               std::vector<double>&);
+                                        PairNetwork<D>&);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)
 #undef ODPD_INSTANTIATE

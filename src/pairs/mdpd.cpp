@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "edge_kernels.h"
+#include "odpd/core/isa.h"
 #include "odpd/pairs/density_writer.h"
 
 namespace odpd {
@@ -17,6 +19,10 @@ namespace {
 double density_norm(double r_d, int dimension) {
   return dimension == 2 ? 6.0 / (std::numbers::pi * r_d * r_d)
                         : 15.0 / (2.0 * std::numbers::pi * r_d * r_d * r_d);
+}
+
+const kernels::EdgeKernels& edge_kernels() {
+  return for_isa(kernels::edge_portable, kernels::edge_avx2, kernels::edge_avx512);
 }
 
 std::vector<double> density_weights(const std::vector<MdpdPair>& pairs) {
@@ -67,9 +73,40 @@ template <int D>
 void MdpdModel<D>::write_edges(const PairList<D>& list, const Box<D>& box,
                                std::span<const Vec<D>> positions, const Particles<D>& particles,
                                PairNetwork<D>& network) const {
-  write_density_edges(
-      densities_, [this](double r, Site i, Site j) { return terms(r, i, j); }, cutoff_, list, box,
-      positions, particles, network);
+  const MdpdPair& p = table_[0].of;
+  const FrictionParameters& f = p.friction;
+  const bool alike =
+      std::all_of(table_.begin(), table_.end(), [&](const Entry& entry) { return entry.of == p; });
+  if (!alike || !(f.s == 0.5 || f.s == 1.0 || f.s == 2.0))
+    return write_density_terms(
+        densities_, [this](double r, Site i, Site j) { return terms(r, i, j); }, cutoff_, list, box,
+        positions, particles, network);
+  network.transverse = f.gamma_perp > 0.0;
+  network.u.each();
+  network.kT.fill(f.kT);
+  if (network.transverse) {
+    network.zeta_perp.each();
+  } else {
+    network.zeta_perp.fill(0.0);
+  }
+  // The pair part is DPD's with s_bar = 1.
+  const kernels::DpdKernelParameters parameters{p.A, 1.0,      f.gamma,     f.gamma_perp,
+                                                f.s, f.cutoff, f.gamma_far, f.cutoff_far};
+  const kernels::WeightParameters weight{kernels::WeightShape::square,
+                                         p.b * density_norm(fluid_.r_d, D), fluid_.r_d};
+  const auto weigh = [&](const PairNetwork<D>& n, std::size_t begin, std::size_t end,
+                         const WeightColumns& columns) {
+    edge_kernels().weights(weight, static_cast<int>(end - begin), &n.r[begin],
+                           {columns.W, columns.W_1, columns.W_2, columns.slope});
+  };
+  const auto fill = [&](PairNetwork<D>& n, std::size_t begin, std::size_t end, double* W_2) {
+    weigh(n, begin, end, {.W_2 = W_2});
+    edge_kernels().dpd(parameters, static_cast<int>(end - begin), &n.r[begin],
+                       {&n.u.each()[begin], &n.f_c[begin], &n.k_c.each()[begin], &n.zeta_par[begin],
+                        n.transverse ? &n.zeta_perp.each()[begin] : nullptr});
+  };
+  write_density_edges<D>(densities_, weigh, fill, cutoff_, list, box, positions, particles,
+                         network);
 }
 
 // At random places rho is n and the mean of the pair force that of all space. A liquid has structure, which takes most of this pressure away;
@@ -131,12 +168,12 @@ void refuse_free_surface(const FluidKeys& keys, const FrictionParameters& fricti
 MdpdPair read_mdpd_pair(const Config& keys, MdpdPair base, bool whole) {
   base.friction = read_friction(keys, base.friction, whole);
   base.A = whole ? keys.number("A") : keys.number("A", base.A);
-  if (keys.has("a"))
+  if (keys.gives("a"))
     keys.fail("a",
               "is DPD's: many-body DPD has A of its pairs (A < 0 attracts) and B of densities");
   if (whole) return base;
   for (const char* key : {"B", "r_d"})
-    if (keys.has(key))
+    if (keys.gives(key))
       keys.fail(
           key,
           "is of the whole fluid: a force with one for each pair of species has no energy. Give b, "

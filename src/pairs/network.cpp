@@ -51,6 +51,7 @@ void PairNetwork<D>::resize(std::int64_t edges) {
   resize_with_room(f_c, n);
   resize_with_room(zeta_par, n);
   for (Column* column : {&u, &k_c, &zeta_perp, &kT}) column->resize(n);
+  if (!densities.empty()) densities.resize(densities.d.size(), n);
 }
 
 template <int D>

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "odpd/core/log.h"
@@ -92,9 +93,40 @@ template <int D>
 void SdpdModel<D>::write_edges(const PairList<D>& list, const Box<D>& box,
                                std::span<const Vec<D>> positions, const Particles<D>& particles,
                                PairNetwork<D>& network) const {
-  write_density_edges(
-      densities_, [this](double r, Site i, Site j) { return terms(r, i, j); }, cutoff(), list, box,
-      positions, particles, network);
+  network.transverse = std::any_of(friction_.begin(), friction_.end(),
+                                   [](const SdpdFriction& f) { return f.A > 0.0; });
+  network.u.fill(0.0);
+  network.kT.fill(p_.kT);
+  if (network.transverse) {
+    network.zeta_perp.each();
+  } else {
+    network.zeta_perp.fill(0.0);
+  }
+  const auto weigh = [this](const PairNetwork<D>& n, std::size_t begin, std::size_t end,
+                            const WeightColumns& columns) {
+    kernel_(std::span(n.r).subspan(begin, end - begin), columns);
+  };
+  // The pair function, a block at a time.
+  const auto fill = [&](PairNetwork<D>& n, std::size_t begin, std::size_t end, double* W_2) {
+    std::array<double, density_block> F;
+    weigh(n, begin, end, {.W_2 = W_2, .slope = F.data()});
+    const std::vector<double>& d = n.densities.d;
+    double* const zeta_par = &n.zeta_par[begin];
+    double* const zeta_perp = n.transverse ? &n.zeta_perp.each()[begin] : nullptr;
+    for (std::size_t k = 0; k < end - begin; ++k) {
+      const std::size_t i = index(n.i[begin + k]), j = index(n.j[begin + k]);
+      const SdpdFriction& of =
+          species_ == 1 ? friction_[0]
+                        : friction_[index(particles.species[i] * species_ + particles.species[j])];
+      const double slope = F[k] / (d[i] * d[j]);
+      zeta_par[k] = (of.A + of.B) * slope;
+      if (zeta_perp != nullptr) zeta_perp[k] = of.A * slope;
+    }
+    std::fill_n(&n.f_c[begin], end - begin, 0.0);
+    std::fill_n(&n.k_c.each()[begin], end - begin, 0.0);
+  };
+  write_density_edges<D>(densities_, weigh, fill, cutoff(), list, box, positions, particles,
+                         network);
 }
 
 // What is compressed relaxes at the rate K over the longitudinal viscosity, which an explicit step follows up to twice its inverse; accurate
@@ -142,9 +174,9 @@ namespace {
 
 // Parameters of DPD that a user may bring along.
 void refuse_dpd_keys(const Config& keys) {
-  for (const char* key :
-       {"a", "s_bar", "gamma", "gamma_perp", "sigma", "s", "cutoff", "rattler_friction"})
-    if (keys.has(key))
+  for (const char* key : {"a", "s_bar", "gamma", "gamma_perp", "sigma", "s", "cutoff",
+                          "rattler_friction", "Sc", "tau_P", "alpha", "kappa_inverse"})
+    if (keys.gives(key))
       keys.fail(key,
                 "is a parameter of DPD; fluid.model = \"sdpd\" is told by what it shall have: eta, "
                 "bulk_modulus or sound_speed, and support in place of a cutoff");

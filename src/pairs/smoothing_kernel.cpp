@@ -6,8 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "edge_kernels.h"
 #include "odpd/core/error.h"
 #include "odpd/core/index.h"
+#include "odpd/core/isa.h"
 
 namespace odpd {
 
@@ -36,6 +38,13 @@ SmoothingKernel::SmoothingKernel(Shape shape, int dimension, double support)
   const KernelRow& row = kernel_table[index(static_cast<int>(shape))];
   scale_ =
       (dimension == 2 ? row.plane : row.space) / std::numbers::pi / std::pow(support, dimension);
+}
+
+void SmoothingKernel::operator()(std::span<const double> r, const WeightColumns& columns) const {
+  const auto& table = for_isa(kernels::edge_portable, kernels::edge_avx2, kernels::edge_avx512);
+  table.weights({static_cast<kernels::WeightShape>(shape_), scale_, support_},
+                static_cast<int>(r.size()), r.data(),
+                {columns.W, columns.W_1, columns.W_2, columns.slope});
 }
 
 const std::vector<std::string>& smoothing_kernel_names() {

@@ -139,6 +139,17 @@ void read_fluid(const Config& config, const std::optional<Calibration>& calibrat
                                     .others = static_cast<double>(others) / scene.start_volume(),
                                     .mass = scene.mass,
                                     .calibration = calibration});
+  const double reach = scene.model->cutoff();
+  for (int c = 0; c < D; ++c)
+    if (scene.box.is_periodic(c) && scene.box.size[c] < 2.0 * reach)
+      config.table("box").fail(
+          "size",
+          fmt::format("is {} in direction {}, which is periodic: it must be at least two "
+                      "cutoffs ({:.6g}), or a particle would see a neighbour twice; enlarge "
+                      "it, or shorten {}",
+                      scene.box.size[c], "xyz"[c], 2.0 * reach,
+                      scene.model->name() == "sdpd" ? "fluid.support, which is in spacings"
+                                                    : "what reaches so far"));
 }
 
 // Particles that fill space take their room from the fluid's.

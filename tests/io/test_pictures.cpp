@@ -79,6 +79,12 @@ TEST(Vtp, LeavesOutWhatTheFrameDoesNotHave) {
   EXPECT_NE(text.find("1 2 0\n3 4 0\n"), std::string::npos);
   EXPECT_NE(text.find("\"id\""), std::string::npos);
   EXPECT_EQ(text.find("\"velocity\""), std::string::npos);
+  EXPECT_EQ(text.find("\"density\""), std::string::npos);
+  frame.density = {0.25, 0.5};
+  write_vtp(directory / "frame.vtp", frame);
+  EXPECT_NE(
+      read_file(directory / "frame.vtp").find("Name=\"density\" format=\"ascii\">\n0.25 0.5\n"),
+      std::string::npos);
   EXPECT_EQ(text.find("\"species\""), std::string::npos);
 }
 

@@ -129,6 +129,26 @@ TEST(Trajectory, GoesOnWithAnOpenSegment) {
                                  {"trajectory.0004.h5"});
 }
 
+TEST(Trajectory, GoesOnWithDensities) {
+  const TemporaryDirectory directory;
+  const auto frame = [](int step) {
+    Frame with = sample_frame(2, 4, step);
+    with.density = {0.1, 0.2, 0.3, 0.1 * step};
+    return with;
+  };
+  TrajectorySegments part = segments_in(directory);
+  for (const int step : {0, 1, 7}) part.append(frame(step));
+  part.save_segment();
+  TrajectorySegments resumed = segments_in(directory);
+  resumed.reopen(0, 2);
+  resumed.append(frame(2));
+  resumed.close_segment();
+  const H5Reader reader(directory / "trajectory.0000.h5");
+  const std::string density = "/particles/all/density/value";
+  EXPECT_EQ(reader.shape(density), (std::vector<std::int64_t>{3, 4}));
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(reader.read_doubles(density, k), frame(k).density);
+}
+
 TEST(Trajectory, IsH5mdToPython) {
   if (!test::python_has("h5py")) GTEST_SKIP() << "h5py is not installed";
   const TemporaryDirectory directory;

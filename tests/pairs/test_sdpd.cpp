@@ -140,6 +140,31 @@ LatticeViscosities of_lattice(const SdpdModel<D>& model) {
   return {shear, longitudinal - 2.0 * shear * (1.0 - 1.0 / D)};
 }
 
+// Vectors of the register's width, of any length: nothing is written behind the last.
+TYPED_TEST(SdpdTest, ManyDistancesAtOnceGiveWhatEachGives) {
+  constexpr int D = TypeParam::D;
+  constexpr double h = 1.7;
+  for (const auto shape : sdpd_shapes) {
+    const SmoothingKernel W(shape, D, h);
+    const double scale = W(0.0).value;
+    for (std::size_t n = 1; n < 20; ++n) {
+      std::vector<double> r;
+      for (std::size_t k = 0; k < n; ++k)
+        r.push_back(1.1 * h * static_cast<double>(k) / static_cast<double>(n));
+      std::vector<std::vector<double>> column(4, std::vector<double>(n + 1, -7.0));
+      W(r, {column[0].data(), column[1].data(), column[2].data(), column[3].data()});
+      for (std::size_t k = 0; k < n; ++k) {
+        const Derivatives w = W(r[k]);
+        EXPECT_NEAR(column[0][k], w.value, 1e-14 * scale);
+        EXPECT_NEAR(column[1][k], w.first, 1e-13 * scale);
+        EXPECT_NEAR(column[2][k], w.second, 1e-13 * scale);
+        EXPECT_NEAR(column[3][k], W.slope(r[k]), 1e-13 * scale);
+      }
+      for (const auto& values : column) EXPECT_EQ(values[n], -7.0);
+    }
+  }
+}
+
 // The relations of A and B are those of many neighbours: 490 in 2D, 3600 in 3D.
 TYPED_TEST(SdpdTest, LatticeOfManyNeighboursHasTheViscositiesAskedFor) {
   constexpr int D = TypeParam::D;

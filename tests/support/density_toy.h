@@ -58,7 +58,7 @@ class ToyModel : public odpd::PairModel<D> {
   void write_edges(const odpd::PairList<D>& list, const odpd::Box<D>& box,
                    std::span<const odpd::Vec<D>> positions, const odpd::Particles<D>& particles,
                    odpd::PairNetwork<D>& network) const override {
-    write_density_edges(
+    write_density_terms(
         densities_, [this](double r, odpd::Site i, odpd::Site j) { return terms(r, i, j); },
         p_.cutoff, list, box, positions, particles, network);
     for (std::size_t k = 0; p_.forgets && k < network.f_c.size(); ++k) network.f_c[k] *= 0.5;

@@ -55,7 +55,8 @@ class Simulation {
   }
   bool stopped_at_target() const { return stopped_at_target_; }
 
-  Frame frame() const { return scene_frame(scene_, clock_); }
+  /// The particles now, in models with densities with these: then the state is judged, and BlowUpError thrown as `judge` does.
+  Frame frame();
   /// All that was measured so far; names are complete from the start.
   Results results() const;
   /// Particles the mirror caught during the measured part: every check fails when there were any.

@@ -1,6 +1,6 @@
 #pragma once
 // Trajectory after H5MD 1.1 (de Buyl, Colberg, Hoefling 2014): /h5md, /particles/all/{box/edges,
-// position, image, velocity} with step, time and value, and {id, species, group} fixed within a
+// position, image, velocity} (and density, where a frame has it) with step, time and value, and {id, species, group} fixed within a
 // segment; D = 2 is stored as 2, edges as a matrix with an edge vector per row. Bonds, as pairs of
 // ids, under /connectivity/bonds. The case and the names of the species are under /parameters/odpd.
 // Written in segments `trajectory.NNNN.h5`, each built in memory and closed (written whole) at a

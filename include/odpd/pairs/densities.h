@@ -20,7 +20,7 @@ struct Derivatives {
   double value = 0.0, first = 0.0, second = 0.0;
 };
 
-/// The functions of one model. One that is `final` loses its virtual calls in `write_density_edges`.
+/// The functions of one model.
 class Densities {
  public:
   virtual ~Densities() = default;

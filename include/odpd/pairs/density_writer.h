@@ -1,9 +1,8 @@
 #pragma once
-// The edges of a model with densities (pairs/densities.h), in three phases: their geometry; d of each particle, a sum over all
+// The edges of a model with densities (pairs/densities.h), in three phases: their geometry and W; d of each particle, a sum over all
 // its partners; their terms, for which d is known at both ends. No phase begins before the last is done with all particles.
-#include "odpd/core/index.h"
-#include "odpd/core/parallel.h"
 #include "odpd/pairs/edge_writer.h"
+#include "odpd/pairs/weight_columns.h"
 
 namespace odpd {
 
@@ -18,69 +17,44 @@ template <int D>
 void add_to_ends(const PairNetwork<D>& network, std::span<const double> value,
                  std::vector<double>& sum);
 
-/// The second phase, d and psi. Pairs that are no edges count as well, with the distances they have at this moment: those
-/// inside a body stay, but not to the last bit, and those of two walls or bodies of known velocity may change.
-template <int D, class Functions>
-void sum_densities(const Functions& functions, double cutoff, const PairList<D>& list,
-                   const Box<D>& box, std::span<const Vec<D>> positions,
-                   const Particles<D>& particles, PairNetwork<D>& network) {
-  DensityColumns& columns = network.densities;
-  const auto particle_count = index(network.particles);
-  columns.d.resize(particle_count);
-  parallel_for(network.particles, [&](std::int64_t particle) {
-    const auto i = index(particle);
-    columns.d[i] = functions.self(site_of(particles, i));
-  });
-  const auto add = [&](const PairNetwork<D>& pairs) {
-    columns.resize(particle_count, index(pairs.size()));
-    parallel_for(pairs.size(), [&](std::int64_t edge) {
-      const auto k = index(edge);
-      const Derivatives w = functions.weight(pairs.r[k], site_of(particles, index(pairs.i[k])),
-                                             site_of(particles, index(pairs.j[k])));
-      columns.W[k] = w.value;
-      columns.W_1[k] = w.first;
-    });
-    add_to_ends<D>(pairs, columns.W, columns.d);
-  };
-  PairNetwork<D> rigid;
-  write_rigid_geometry(list, cutoff, box, positions, particles, rigid);
-  if (rigid.size() > 0) add(rigid);
-  add(network);
-  // Between the phases: here ranks would fetch d of the particles that others own.
-  parallel_for(network.particles, [&](std::int64_t particle) {
-    const auto i = index(particle);
-    const Derivatives psi = functions.energy(site_of(particles, i, columns.d[i]));
-    columns.psi[i] = psi.value;
-    columns.psi_1[i] = psi.first;
-    columns.psi_2[i] = psi.second;
-  });
-}
+/// Edges written at a time.
+inline constexpr std::int64_t density_block = 256;
 
-/// `functions` is the model's Densities, and `terms(r, site_i, site_j)` its inline pair function at the densities of the sites:
-/// the forces of psi are added here.
-template <int D, class Functions, class Terms>
-void write_density_edges(const Functions& functions, const Terms& terms, double cutoff,
+/// weigh(network, begin, end, columns): W of the edges begin <= k < end to `columns`, which start at `begin`. It may run on any thread.
+template <int D>
+using DensityWeights =
+    std::function<void(const PairNetwork<D>&, std::size_t, std::size_t, const WeightColumns&)>;
+/// By `functions`, edge by edge, for any pairs of species. No slope.
+template <int D>
+DensityWeights<D> weights_of(const Densities& functions, const Particles<D>& particles);
+
+/// fill(network, begin, end, W_2): what the model's pair function gives for the edges begin <= k < end, at most density_block of them, with
+/// d of their ends in `network.densities`: f_c, k_c, zeta_par and those of u, zeta_perp and kT that vary; and W'' of each, from W_2 on. It may
+/// run on any thread.
+template <int D>
+using DensityFill = std::function<void(PairNetwork<D>&, std::size_t, std::size_t, double*)>;
+
+/// The forces of psi are added to what `fill` writes.
+template <int D>
+void write_density_edges(const Densities& functions, const DensityWeights<D>& weigh,
+                         const DensityFill<D>& fill, double cutoff, const PairList<D>& list,
+                         const Box<D>& box, std::span<const Vec<D>> positions,
+                         const Particles<D>& particles, PairNetwork<D>& network);
+
+/// The same by `terms(r, site_i, site_j)`, the model's inline pair function at the densities of the sites.
+template <int D, class Terms>
+void write_density_terms(const Densities& functions, const Terms& terms, double cutoff,
                          const PairList<D>& list, const Box<D>& box,
                          std::span<const Vec<D>> positions, const Particles<D>& particles,
                          PairNetwork<D>& network) {
-  for (Column* column : {&network.u, &network.k_c, &network.zeta_perp, &network.kT}) column->each();
-  write_edge_geometry<D>(
-      list, cutoff, box, positions, particles, [](PairNetwork<D>&, std::size_t, std::size_t) {},
-      network);
-  sum_densities(functions, cutoff, list, box, positions, particles, network);
-  const DensityColumns& columns = network.densities;
-  const auto site = [&](std::size_t i) { return site_of(particles, i, columns.d[i]); };
-  constexpr std::int64_t at_a_time = 256;
-  parallel_ranges(network.size(), at_a_time, [&](std::int64_t begin, std::int64_t end) {
-    const auto k_c = network.k_c.each();
-    fill_terms(terms, site, index(begin), index(end), network);
-    for (auto k = index(begin); k < index(end); ++k) {
-      const auto i = index(network.i[k]), j = index(network.j[k]);
-      const double slope = columns.psi_1[i] + columns.psi_1[j];
-      network.f_c[k] -= slope * columns.W_1[k];
-      k_c[k] += slope * functions.weight(network.r[k], site(i), site(j)).second;
-    }
-  });
+  for (Column* column : {&network.u, &network.zeta_perp, &network.kT}) column->each();
+  const DensityWeights<D> weigh = weights_of(functions, particles);
+  const auto fill = [&](PairNetwork<D>& n, std::size_t begin, std::size_t end, double* W_2) {
+    const auto site = [&](std::size_t i) { return site_of(particles, i, n.densities.d[i]); };
+    fill_terms(terms, site, begin, end, n);
+    weigh(n, begin, end, {.W_2 = W_2});
+  };
+  write_density_edges<D>(functions, weigh, fill, cutoff, list, box, positions, particles, network);
   network.transverse = false;
   for (const double z : network.zeta_perp.each()) network.transverse |= z != 0.0;
 }

@@ -55,6 +55,7 @@ void write_pair_edges(const Terms& terms, double cutoff, const PairList<D>& list
   const auto fill = [&](PairNetwork<D>& n, std::size_t begin, std::size_t end) {
     fill_terms(terms, site, begin, end, n);
   };
+  network.densities.resize(0, 0);
   write_edge_geometry<D>(list, cutoff, box, positions, particles, fill, network);
   network.transverse = false;
   for (const double z : network.zeta_perp.each()) network.transverse |= z != 0.0;

@@ -8,10 +8,12 @@
 //
 // with x = 3 q, each term of the last only where its base is positive (Lucy 1977; Wendland 1995; Morris, Fox & Zhu 1997). All have a slope that
 // vanishes as r at r = 0, so that F = -W'/r is finite there.
+#include <span>
 #include <string>
 #include <vector>
 
 #include "odpd/pairs/densities.h"
+#include "odpd/pairs/weight_columns.h"
 
 namespace odpd {
 
@@ -28,6 +30,8 @@ class SmoothingKernel {
   Derivatives operator()(double r) const;
   /// F = -W'/r >= 0 at r >= 0 (1/length^(d + 2)).
   double slope(double r) const;
+  /// All of these distances at once.
+  void operator()(std::span<const double> r, const WeightColumns& columns) const;
 
   bool operator==(const SmoothingKernel&) const = default;
 
