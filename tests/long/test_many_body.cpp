@@ -1,4 +1,4 @@
-// Many-body DPD against reference values: pressures of the bulk liquid, tension of a slab, pressure of drops.
+// Many-body DPD against reference values: pressures of the bulk liquid, and tension of a slab.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,8 @@ void expect_value(const Results& results, const char* name, double value, double
   EXPECT_NEAR(x.mean, value, tolerance) << name;
 }
 
-// The reference values are those of another program; their error, and ours, are below a third of each bound.
+// The reference values are those of another program (errors 0.05 to 0.08 in 3D; in 2D the density of zero pressure is known to 0.002). Each
+// bound is several errors of the difference wide.
 TEST(LongManyBody, TheLiquidHasItsPressure) {
   const std::string cube = "[box]\nsize = [5.0, 5.0, 5.0]\nperiodic = [true, true, true]\n",
                     square = "[box]\nsize = [14.0, 14.0]\nperiodic = [true, true]\n",
@@ -48,10 +49,11 @@ TEST(LongManyBody, TheLiquidHasItsPressure) {
   pressure_3d("6.4", 17.45, 0.25);
   pressure_3d("7.0", 60.96, 0.4);
   // Zero at the density of the liquid beside its vapour.
-  expect_value(liquid_run<2>(bulk("25.0", "4.142"), square + sampled), "pressure", 0.0, 0.12);
-  expect_value(liquid_run<2>(bulk("40.0", "3.304"), square + sampled), "pressure", 0.0, 0.12);
+  expect_value(liquid_run<2>(bulk("25.0", "4.142"), square + sampled), "pressure", 0.0, 0.2);
+  expect_value(liquid_run<2>(bulk("40.0", "3.304"), square + sampled), "pressure", 0.0, 0.2);
 }
 
+// The reference: 7.38(14) and 7.27(20); 13000 sweeps have an error of about 0.14.
 TEST(LongManyBody, ASlabHasItsTensionByBothRoutes) {
   const Results slab =
       liquid_run<3>("mass = 0.05\nB = 25.0\ndensity = 6.08",
@@ -59,8 +61,8 @@ TEST(LongManyBody, ASlabHasItsTensionByBothRoutes) {
                     "region = { from = [0.0, 0.0, 4.5], to = [6.0, 6.0, 13.5] }\n[integrator]\n"
                     "name = \"monte-carlo\"\n[run]\nequilibrate = 1000\nduration = 12000\n"
                     "[[observe]]\nkind = \"surface-tension\"\n");
-  expect_value(slab, "surface-tension.stress", 7.4, 0.3);
-  expect_value(slab, "surface-tension.test_area", 7.4, 0.3);
+  expect_value(slab, "surface-tension.stress", 7.4, 0.6);
+  expect_value(slab, "surface-tension.test_area", 7.4, 0.6);
 }
 
 }  // namespace

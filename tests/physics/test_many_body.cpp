@@ -8,34 +8,39 @@
 namespace odpd {
 namespace {
 
-// A liquid of density 4.14 at zero pressure, its surface tension 3.57 (2D); `scene` ends with the table of the integrator.
+// At zero pressure the liquid has the density 6.08 in 3D, 4.14 in 2D, where its surface tension is 3.57. `scene` ends with the table of the
+// integrator.
+template <int D>
 Results many_body_run(const std::string& scene, const std::string& run) {
   const Config config = Config::from_text(
-      "dimension = 2\nseed = 3\n[fluid]\nmodel = \"mdpd\"\ndensity = 4.142\nmass = 0.05\nA = "
-      "-40.0\n"
-      "B = 25.0\nr_d = 0.75\ngamma = 4.5\nkT = 1.0\n[solver]\ntolerance = 1e-4\n" +
+      std::string(D == 2 ? "dimension = 2\n[fluid]\ndensity = 4.142\n"
+                         : "dimension = 3\n[fluid]\ndensity = 6.08\n") +
+          "model = \"mdpd\"\nmass = 0.05\nA = -40.0\nB = 25.0\nr_d = 0.75\ngamma = 4.5\n"
+          "kT = 1.0\n[solver]\ntolerance = 1e-4\n" +
           scene + "\n[run]\n" + run,
       "case.toml");
-  Simulation<2> simulation(config, read_case(config, "liquid"));
+  Simulation<D> simulation(config, read_case(config, "liquid"));
   simulation.run([] { return false; }, [] {});
   return simulation.results();
 }
 
-const std::string drop_of_80 =
-    "[box]\nsize = [8.0, 8.0]\nperiodic = [true, true]\n"
-    "[start]\nregion = { centre = [4.0, 4.0], radius = 2.48 }\n[[observe]]\nkind = \"thermo\"\n"
-    "every = 4\n[[observe]]\nkind = \"drop\"\ncore = 1.0\n[integrator]\n";
+const std::string drop_of_100 =
+    "[box]\nsize = [7.0, 7.0, 7.0]\nperiodic = [true, true, true]\n"
+    "[start]\nregion = { centre = [3.5, 3.5, 3.5], radius = 1.5776 }\n[[observe]]\n"
+    "kind = \"thermo\"\nevery = 4\n[[observe]]\nkind = \"drop\"\ncore = 0.8\n[integrator]\n";
 
 const std::string slab_of_150 =
     "[box]\nsize = [6.0, 12.0]\nperiodic = [true, true]\n"
     "[start]\nregion = { from = [0.0, 3.0], to = [6.0, 9.0] }\n[[observe]]\n"
     "kind = \"surface-tension\"\nstrain = 2e-3\n[integrator]\nname = \"monte-carlo\"\n";
 
-// The rule sqrt(kT/m) dt <= 0.03 r_c allows dt = 0.0067.
+// sqrt(kT/m) dt is 0.018 r_c, of 0.03 at most. The temperature of one run differs by its angular momentum, which it keeps: 3 of 297
+// velocities. velocity-verlet, which takes friction as it was, is far off at this step: U = -9.07(3) instead of -9.87(1).
 TEST(ManyBody, ADropWithMassSamplesWhatMonteCarloDoes) {
-  const Results exact =
-      many_body_run(drop_of_80 + "name = \"monte-carlo\"", "equilibrate = 300\nduration = 4000");
-  const Results moved = many_body_run(drop_of_80 + "dt = 0.005", "equilibrate = 2\nduration = 20");
+  const Results exact = many_body_run<3>(drop_of_100 + "name = \"monte-carlo\"",
+                                         "equilibrate = 300\nduration = 3000");
+  const Results moved =
+      many_body_run<3>(drop_of_100 + "dt = 0.004", "equilibrate = 2\nduration = 14");
   for (const char* name : {"energy_per_particle", "drop.core_density"}) {
     const Scalar &a = *exact.find(name), &b = *moved.find(name);
     const double error = std::hypot(a.standard_error, b.standard_error);
@@ -44,12 +49,16 @@ TEST(ManyBody, ADropWithMassSamplesWhatMonteCarloDoes) {
   }
   const Scalar& kinetic = *moved.find("kinetic_temperature");
   EXPECT_LT(kinetic.standard_error, 0.01);
-  EXPECT_NEAR(kinetic.mean, 1.0, 5.0 * kinetic.standard_error);
+  EXPECT_NEAR(kinetic.mean, 1.0, 5.0 * kinetic.standard_error + 4.0 * std::sqrt(6.0) / 297.0);
+  const Results wrong = many_body_run<3>(drop_of_100 + "name = \"velocity-verlet\"\ndt = 0.004",
+                                         "equilibrate = 2\nduration = 5");
+  EXPECT_GT(wrong.find("energy_per_particle")->mean, exact.find("energy_per_particle")->mean + 0.3);
 }
 
+// With a pair force 5 % too large for its energy the routes differ by 0.4, and the vapour has a pressure of -1.9(2).
 // Of the same configurations, so that the routes differ by far less than either does from the mean of a long run.
 TEST(ManyBody, ASlabHasATensionByBothRoutes) {
-  const Results slab = many_body_run(slab_of_150, "equilibrate = 300\nduration = 3000");
+  const Results slab = many_body_run<2>(slab_of_150, "equilibrate = 300\nduration = 3000");
   const Scalar &stress = *slab.find("surface-tension.stress"),
                &area = *slab.find("surface-tension.test_area");
   EXPECT_LT(stress.standard_error, 0.5);
@@ -64,7 +73,7 @@ TEST(ManyBody, ALiquidWithoutSurfacesHasNone) {
   const std::string filled =
       "[box]\nsize = [4.0, 5.0]\nperiodic = [true, true]\n[[observe]]\n"
       "kind = \"surface-tension\"\nstrain = 2e-3\n[integrator]\nname = \"monte-carlo\"\n";
-  const Results bulk = many_body_run(filled, "equilibrate = 300\nduration = 2500");
+  const Results bulk = many_body_run<2>(filled, "equilibrate = 300\nduration = 2500");
   for (const char* name : {"surface-tension.stress", "surface-tension.test_area"}) {
     const Scalar& gamma = *bulk.find(name);
     EXPECT_LT(gamma.standard_error, 0.5);
