@@ -53,6 +53,9 @@ BlowUpWatch<D>::BlowUpWatch(const Scene<D>& scene, double multiple)
   }
   if (fastest_squared > 0.0)
     flow_slip_ = 2.0 * std::sqrt(fastest_squared * scene.model().cutoff() / fluid_depth());
+  if (const SceneSettings<D>& s = scene.settings(); s.start_wave.number > 0)
+    flow_slip_ += s.start_wave.largest(s.box, s.start_velocity) * scene.model().cutoff() *
+                  std::sqrt(s.start_wave.wave_number_squared(s.box, s.start_velocity));
   // As between walls that move with half the sliding velocity each.
   if (const auto& shear = scene.box().shear)
     flow_slip_ += std::abs(shear->rate) *

@@ -181,6 +181,15 @@ void place_walls(const SceneSettings<D>& settings, Particles<D>& particles) {
       for (Vec<D> point : grid_points<D>(Vec<D>{}, settings.box.size, count)) {
         const double from_end = wall.thickness - layer.depth;
         point[wall.axis] = wall.high ? settings.box.size[wall.axis] - from_end : from_end;
+        const auto behind = [&](const WallSettings<D>& other) {
+          const double x = point[other.axis];
+          return other.axis != wall.axis &&
+                 (other.high ? settings.box.size[other.axis] - x : x) < other.thickness;
+        };
+        if (wall.lattice &&
+            std::any_of(settings.walls.begin(),
+                        settings.walls.begin() + static_cast<std::ptrdiff_t>(w), behind))
+          continue;
         particles.add(point, wall.species, Group::wall(static_cast<std::int32_t>(w)));
       }
     }

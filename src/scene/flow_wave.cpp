@@ -1,5 +1,6 @@
 #include "odpd/scene/flow_wave.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -16,6 +17,13 @@ double FlowWave::wave_number_squared(const Box<D>& box, const Vec<D>& amplitude)
   if (shape == Shape::sine) return k * k;
   const double across = wave_number(box, direction_of(amplitude));
   return k * k + across * across;
+}
+
+template <int D>
+double FlowWave::largest(const Box<D>& box, const Vec<D>& amplitude) const {
+  const double size = norm(amplitude);
+  if (shape == Shape::sine) return size;
+  return size * std::max(1.0, wave_number(box, direction_of(amplitude)) / wave_number(box, along));
 }
 
 template <int D>
@@ -44,6 +52,7 @@ int direction_of(const Vec<D>& v) {
   template int direction_of<D>(const Vec<D>&);                                          \
   template double FlowWave::wave_number<D>(const Box<D>&, int) const;                   \
   template double FlowWave::wave_number_squared<D>(const Box<D>&, const Vec<D>&) const; \
+  template double FlowWave::largest<D>(const Box<D>&, const Vec<D>&) const;             \
   template Vec<D> FlowWave::at<D>(const Vec<D>&, const Box<D>&, const Vec<D>&) const;
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)

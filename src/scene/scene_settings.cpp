@@ -154,17 +154,18 @@ void read_fluid(const Config& config, const std::optional<Calibration>& calibrat
 
 // Particles that fill space take their room from the fluid's.
 template <int D>
-void make_room(SceneSettings<D>& scene) {
+void make_room(const Config& fluid, SceneSettings<D>& scene) {
   const auto reference = scene.model->reference_state(scene.mass);
   const std::int64_t others = scene.body_particles() + scene.molecule_beads();
-  if (!reference || reference->spacing == 0.0 || scene.count >= 0 || others == 0) return;
-  scene.count = std::llround(scene.density * scene.start_volume()) - others;
+  const double density = scene.start == StartKind::file ? scene.start_density : scene.density;
+  if (!reference || reference->spacing == 0.0 || scene.count >= 0 || others == 0 || density == 0.0)
+    return;
+  scene.count = std::llround(density * scene.start_volume()) - others;
   if (scene.count < 1)
-    throw ConfigError(
-        fmt::format("no room is left for the fluid at fluid.density: bodies and molecules have {} "
-                    "particles, the space where it starts has "
-                    "room for {}: use a larger box",
-                    others, scene.count + others));
+    fluid.fail("density",
+               fmt::format("leaves no room for the fluid: bodies and molecules have {} particles, "
+                           "the space where it starts has room for {}: use a larger box",
+                           others, scene.count + others));
 }
 
 // A drag relative to the frame at rest screens flow beyond sqrt(eta/(n zeta_0)) and takes momentum away.
@@ -200,12 +201,11 @@ void read_start(const Config& config, SceneSettings<D>& scene) {
   if (scene.relax_sweeps < 0) start.fail("relax_sweeps", "must be zero or positive");
 }
 
-// Between the walls, so it needs these.
 template <int D>
 void read_place(const Config& start, SceneSettings<D>& scene) {
   if (!start.has("region")) return;
   const Config region = start.table("region");
-  scene.start_region = read_start_region<D>(region, scene.fluid_low(), scene.fluid_high());
+  scene.start_region = read_start_region<D>(region);
   if (scene.start == StartKind::lattice && scene.start_region->radius > 0.0)
     region.fail("radius", "a lattice fills blocks: give from and to, or start.from = \"random\"");
 }
@@ -268,10 +268,7 @@ bool SceneSettings<D>::forces_along(int component) const {
 
 template <int D>
 double SceneSettings<D>::largest_force() const {
-  double force = norm(body_force);
-  if (force_wave.shape == FlowWave::Shape::taylor_green)
-    force *= std::max(1.0, force_wave.wave_number(box, direction_of(body_force)) /
-                               force_wave.wave_number(box, force_wave.along));
+  double force = force_wave.largest(box, body_force);
   for (const auto& region : force_regions) force += norm(region.force);
   return force;
 }
@@ -347,7 +344,10 @@ SceneSettings<D> read_scene_settings(const Config& config,
   read_molecules(config, scene);
   read_fluid(config, calibration, scene);
   complete_walls(config, scene);
-  make_room(scene);
+  if (scene.start_region)
+    check_start_region(config.table("start").table("region"), *scene.start_region,
+                       scene.fluid_low(), scene.fluid_high());
+  make_room(config.table("fluid"), scene);
   read_drive(config, scene);
   read_start_flow(config, scene);
   read_shear(config, scene);

@@ -17,7 +17,7 @@ double StartRegion<D>::volume() const {
 }
 
 template <int D>
-StartRegion<D> read_start_region(const Config& region, const Vec<D>& low, const Vec<D>& high) {
+StartRegion<D> read_start_region(const Config& region) {
   const bool ball = region.has("centre") || region.has("radius");
   if (ball && (region.has("from") || region.has("to")))
     region.fail(region.has("from") ? "from" : "to",
@@ -34,25 +34,34 @@ StartRegion<D> read_start_region(const Config& region, const Vec<D>& low, const 
     r.from = read_vector<D>(region, "from");
     r.to = read_vector<D>(region, "to");
   }
-  for (int c = 0; c < D; ++c) {
+  for (int c = 0; c < D; ++c)
     if (!(r.to[c] > r.from[c]))
       region.fail("to", fmt::format("must lie above from in every direction, but along {} it is {} "
                                     "and from is {}",
                                     "xyz"[c], r.to[c], r.from[c]));
-    if (r.from[c] < low[c] || r.to[c] > high[c])
-      region.fail(ball                 ? "radius"
-                  : r.from[c] < low[c] ? "from"
-                                       : "to",
-                  fmt::format("the region reaches from {} to {} along {}, but the space for the "
-                              "fluid from {} to {}",
-                              r.from[c], r.to[c], "xyz"[c], low[c], high[c]));
-  }
   return r;
+}
+
+template <int D>
+void check_start_region(const Config& keys, const StartRegion<D>& region, const Vec<D>& low,
+                        const Vec<D>& high) {
+  for (int c = 0; c < D; ++c)
+    if (region.from[c] < low[c] || region.to[c] > high[c])
+      keys.fail(region.radius > 0.0       ? "radius"
+                : region.from[c] < low[c] ? "from"
+                                          : "to",
+                fmt::format("the region reaches from {} to {} along {}, but the space for the "
+                            "fluid from {} to {}",
+                            region.from[c], region.to[c], "xyz"[c], low[c], high[c]));
 }
 
 template struct StartRegion<2>;
 template struct StartRegion<3>;
-template StartRegion<2> read_start_region<2>(const Config&, const Vec<2>&, const Vec<2>&);
-template StartRegion<3> read_start_region<3>(const Config&, const Vec<3>&, const Vec<3>&);
+template StartRegion<2> read_start_region<2>(const Config&);
+template StartRegion<3> read_start_region<3>(const Config&);
+template void check_start_region<2>(const Config&, const StartRegion<2>&, const Vec<2>&,
+                                    const Vec<2>&);
+template void check_start_region<3>(const Config&, const StartRegion<3>&, const Vec<3>&,
+                                    const Vec<3>&);
 
 }  // namespace odpd

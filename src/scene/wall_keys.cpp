@@ -58,7 +58,7 @@ WallSettings<D> read_wall(const Config& entry, const SceneSettings<D>& scene) {
   if (scene.wall_at(wall.axis, wall.high) >= 0)
     entry.fail("side", fmt::format("there are two walls at {}", side));
   wall.thickness = entry.positive("thickness", wall.thickness);
-  check_thickness(entry, scene.box, wall);
+  if (entry.has("thickness")) check_thickness(entry, scene.box, wall);
   wall.velocity = read_optional_vector<D>(entry, "velocity");
   if (wall.velocity[wall.axis] != 0.0)
     entry.fail("velocity",
@@ -87,6 +87,7 @@ void fill_wall(const ReferenceState& reference, double reach, bool thick, const 
   const double count =
       thick ? std::max(1.0, std::round(wall.thickness / across)) : std::ceil(reach / across - 1e-9);
   if (!thick) wall.thickness = count * across;
+  wall.lattice = true;
   for (double k = 0.5; k < count; ++k)
     wall.layers.push_back({.depth = k * wall.thickness / count, .spacing = reference.spacing});
 }

@@ -67,6 +67,37 @@ TEST(WallKeys, ACountNeedsAThickness) {
   EXPECT_EQ(given.walls[0].layers.size(), 3u);
 }
 
+// Where two directions are bounded the corners belong to the first wall: no place is taken twice, and the lattice is even.
+TEST(WallKeys, WallsMeetInCorners) {
+  const auto tank = cases::settings<2>(
+      wet_channel, {"box.size=[8.0, 8.0]", "box.periodic=[false, false]",
+                    "wall=[{side=\"x-\"},{side=\"x+\"},{side=\"y-\"},{side=\"y+\"}]"});
+  const Scene<2> scene(tank);
+  const Particles<2>& particles = scene.particles();
+  std::int64_t frozen = 0;
+  for (std::size_t i = 0; i < particles.group.size(); ++i) {
+    if (particles.is_free(i)) continue;
+    ++frozen;
+    for (std::size_t j = 0; j < i; ++j)
+      if (!particles.is_free(j))
+        EXPECT_GT(norm(particles.position[i] - particles.position[j]), 0.49);
+  }
+  EXPECT_EQ(frozen, 16 * 16 - 10 * 10);
+}
+
+// The usual thickness of other models, 1, says nothing about units in which a box is small.
+TEST(WallKeys, AThicknessThatNobodyGaveIsNotRefused) {
+  const auto small = cases::settings<2>(
+      wet_channel, {"box.size=[1.04, 1.2]", "fluid.density=400.0", "fluid.bulk_modulus=4e4"});
+  EXPECT_LT(small.walls[0].thickness, 0.17);
+}
+
+TEST(WallKeys, ARegionLiesBetweenTheWallsAsTheyAre) {
+  support::expect_error<ConfigError>(
+      [] { cases::settings<2>(wet_channel, {"start.region={from=[0.0, 1.2], to=[10.0, 8.0]}"}); },
+      {"start.region.from", "1.2", "1.5"});
+}
+
 TEST(WallKeys, AWallThatFillsHalfOfTheBoxIsRefused) {
   support::expect_error<ConfigError>(
       [] { cases::settings<2>(wet_channel, {"box.size=[10.4, 3.0]"}); },
@@ -95,7 +126,12 @@ TEST(WallKeys, BodiesTakeTheRoomOfFluid) {
   EXPECT_NEAR(by_count.model->reference_state(0.0)->density, 4.0, 1e-12);
   EXPECT_EQ(Scene<2>(by_count).particles().free_count(), 381);
   support::expect_error<ConfigError>([] { cases::settings<2>(wet_box, {"fluid.density=0.18"}); },
-                                     {"no room", "19", "18"});
+                                     {"fluid.density", "no room", "19", "18"});
+  // What a start file must hold.
+  EXPECT_EQ(cases::settings<2>(wet_box, {"fluid.density=4.0", "start.from=\"file\"",
+                                         "start.file=\"particles.csv\""})
+                .count,
+            381);
 }
 
 // DPD's particles overlap as they like: there its density is that of the free ones in all space.

@@ -1,7 +1,7 @@
 #pragma once
 // When a run has blown up, why, and what to do. With b = run.blow_up, kT the largest of the scene, and u the slip between
 // neighbours that the drive can cause (u^2 = (2 U)^2 r_c/H for walls of speed U a gap H apart, or bodies of given speed in a box
-// H long), and F_b the forces on bodies (a torque as one at its edge, or at r_c), a state is judged bad when
+// H long; u = k U r_c of a wave at the start), and F_b the forces on bodies (a torque as one at its edge, or at r_c), a state is judged bad when
 //
 //   energy per particle      U/N > b (U_0 + d kT + |f| H + sum F_b r_c/N), N the particles that move, those of bodies included; U_0 the
 //                            larger of that at the start and of a random arrangement of the same density, of hard cores one that

@@ -26,6 +26,9 @@ struct FlowWave {
   /// k^2 of the wave of this amplitude.
   template <int D>
   double wave_number_squared(const Box<D>& box, const Vec<D>& amplitude) const;
+  /// Largest |F_c| of any component (of the amplitude's unit).
+  template <int D>
+  double largest(const Box<D>& box, const Vec<D>& amplitude) const;
   /// The wave of this amplitude at r.
   template <int D>
   Vec<D> at(const Vec<D>& r, const Box<D>& box, const Vec<D>& amplitude) const;

@@ -38,6 +38,8 @@ struct WallSettings {
   double thickness = 1.0;  ///< from the end of the box to the surface (length)
   Vec<D> velocity{};       ///< tangential (length/time)
   std::vector<WallLayer> layers;
+  bool lattice =
+      false;  ///< the layers fill it, so that where walls of two directions meet they are those of the first
   std::int32_t species = 0;
   /// Smooth potential u = stiffness/2 h^2 of a fluid particle a depth h > 0 behind the surface (force/length).
   double stiffness = 1000.0;

@@ -16,9 +16,13 @@ struct StartRegion {
   double volume() const;
 };
 
-/// The keys `from` and `to`, or `centre` and `radius`, of a table. Throws ConfigError where the region does not lie between `low` and
-/// `high`, the ends of the space between the walls.
+/// The keys `from` and `to`, or `centre` and `radius`, of a table. Throws ConfigError where they make no region.
 template <int D>
-StartRegion<D> read_start_region(const Config& region, const Vec<D>& low, const Vec<D>& high);
+StartRegion<D> read_start_region(const Config& region);
+
+/// Throws ConfigError where the region of these keys does not lie between `low` and `high`, the ends of the space between the walls.
+template <int D>
+void check_start_region(const Config& keys, const StartRegion<D>& region, const Vec<D>& low,
+                        const Vec<D>& high);
 
 }  // namespace odpd
