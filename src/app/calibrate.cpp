@@ -83,9 +83,10 @@ CalibrationRecord read_record(const CalibrateOptions& options, const Config& con
                            "an observer of kind = \"viscosity\"",
                            s.model->name()));
   check_fluid(fluid, s);
-  // The nominal density, which a count or a start file gives by its number of particles.
+  // The nominal density, which a count or a start file gives by its number of particles; of SDPD that beside bodies.
   const double density =
-      s.count >= 0 || s.start == StartKind::file
+      sdpd != nullptr ? sdpd->fluid().state.d_0
+      : s.count >= 0 || s.start == StartKind::file
           ? static_cast<double>(simulation.scene().particles().free_count()) / s.fluid_volume()
           : s.density;
   CalibrationRecord record;

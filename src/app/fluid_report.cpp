@@ -24,9 +24,9 @@ using Named = std::vector<std::pair<std::string, double>>;
 
 template <int D>
 double density_of(const Scene<D>& scene) {
-  // Of what fills space beside bodies.
-  const auto reference = scene.model().reference_state(scene.settings().mass);
-  if (reference && reference->spacing > 0.0) return reference->density;
+  // Beside bodies, or of a drop.
+  if (const auto reference = scene.model().reference_state(scene.settings().mass))
+    return reference->density;
   return static_cast<double>(scene.particles().free_count()) / scene.fluid_volume();
 }
 
