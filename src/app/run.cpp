@@ -94,13 +94,16 @@ void warn_of_step(const Simulation<D>& simulation) {
   const Scene<D>& scene = simulation.scene();
   const CaseSettings& settings = simulation.settings();
   const double dt = settings.clock.dt, mass = scene.settings().mass, kT = scene.largest_kT();
-  // Explicit conservative forces are accurate to one to two times this limit.
+  // Explicit forces of pairs are accurate to one to two times their limit, those of densities up to theirs.
   const std::optional<double> limit = scene.explicit_step_limit();
-  if (repulsion_is_explicit(settings.integrator) && limit && dt > 2.0 * *limit)
-    log_warning(fmt::format(
-        "integrator.dt = {} is beyond {:.3g}, twice the limit of explicit repulsion: it "
-        "is no longer accurate there",
-        dt, 2.0 * *limit));
+  const auto reference = scene.model().reference_state(mass);
+  const bool of_densities = limit && reference && reference->accurate_step <= *limit;
+  const double most = limit ? (of_densities ? 1.0 : 2.0) * *limit : 0.0;
+  if (repulsion_is_explicit(settings.integrator) && limit && dt > most)
+    log_warning(
+        fmt::format("integrator.dt = {} is beyond {:.3g}, {} of explicit repulsion: it is no "
+                    "longer accurate there",
+                    dt, most, of_densities ? "the limit" : "twice the limit"));
   const double path = scene.model().thermal_path();
   if (mass > 0.0 && integrator_traits(settings.integrator.name).in_time &&
       std::sqrt(kT / mass) * dt > path)
