@@ -93,6 +93,7 @@ void refuse_control(const ObserverEntry<D>& entry, const ObserverSettings& setti
     fail(
         "needs to know the second stage of a step: use the integrator 'trapezoidal' or 'midpoint'");
   if (!(entry.scene.largest_kT() > 0.0)) fail("measures by thermal motion: kT must be positive");
+  if (s.zeta_0 > 0.0) fail("knows the noise of pairs alone: leave out fluid.zeta_0");
   if (s.driven()) fail("measures at equilibrium: nothing may drive, move or shear the scene");
   const auto free = [](const BodySettings<D>& body) { return body.motion == BodyMotion::free; };
   if (!std::all_of(s.bodies.begin(), s.bodies.end(), free))
@@ -115,6 +116,7 @@ std::unique_ptr<Observer<D>> Bodies<D>::make(const ObserverEntry<D>& entry) {
   b.msd = read_msd(entry);
   b.around = read_fluid_around(entry);
   b.control = read_control(entry.config, b.msd.window, entry.clock.dt);
+  if (!entry.in_time) b.control = {};  // sampling moves nothing
   const bool controlled = b.control.every > 0;
   ObserverSettings settings = entry.settings(controlled ? 1 : 2);
   if (controlled && entry.in_time) refuse_control(entry, settings);
@@ -319,6 +321,8 @@ void Bodies<D>::add_mobility(const std::string& name, std::size_t kind, Results&
   const ModeGrowth::Estimate whole = growth.chi(0), frozen = growth.frozen(0);
   results.scalars.push_back({name + ".mobility", whole.mean, whole.error});
   results.scalars.push_back({name + ".frozen_mobility", frozen.mean, frozen.error});
+  if (!scene_.bonds().empty() && kind == 0)
+    results.notes.push_back(control_with_bonds(this->settings().name));
   if (growth.samples() == 0) return;
   Table table;
   table.comment = {"mobility by the growth of displacements up to this lag, without the noise"};

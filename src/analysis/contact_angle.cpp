@@ -61,7 +61,9 @@ std::unique_ptr<Observer<D>> ContactAngle<D>::make(const ObserverEntry<D>& entry
   const std::string side = entry.config.choice("wall", sides, sides[0]);
   ContactAngleSettings drop;
   while (sides[drop.wall] != side) ++drop.wall;
-  drop.density = entry.config.positive("density", scene.density);
+  const bool given = scene.count < 0 && scene.start != StartKind::file;
+  drop.density =
+      given ? entry.config.positive("density", scene.density) : entry.config.positive("density");
   drop.offset = entry.config.number("offset", 0.0);
   return std::make_unique<ContactAngle<D>>(std::move(settings), drop, entry.scene);
 }

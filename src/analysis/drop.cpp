@@ -30,7 +30,7 @@ template <int D>
 Vec<D> centre_of_mass(const Box<D>& box, const Particles<D>& particles,
                       const std::vector<Vec<D>>& positions) {
   const Share own = particles.owned();
-  const auto mean_of = [&](auto&& value) {
+  const auto sum_of = [&](auto&& value) {
     Vec<D> sum{};
     for (std::size_t i = 0; i < positions.size(); ++i)
       if (particles.is_free(i) && own.owns(i)) sum += value(positions[i]);
@@ -39,11 +39,11 @@ Vec<D> centre_of_mass(const Box<D>& box, const Particles<D>& particles,
   };
   Vec<D> turn{}, sines{}, cosines{}, centre{};
   for (int c = 0; c < D; ++c) turn[c] = 2.0 * std::numbers::pi / box.size[c];
-  sines = mean_of([&](Vec<D> r) {
+  sines = sum_of([&](Vec<D> r) {
     for (int c = 0; c < D; ++c) r[c] = std::sin(turn[c] * r[c]);
     return r;
   });
-  cosines = mean_of([&](Vec<D> r) {
+  cosines = sum_of([&](Vec<D> r) {
     for (int c = 0; c < D; ++c) r[c] = std::cos(turn[c] * r[c]);
     return r;
   });
@@ -53,7 +53,7 @@ Vec<D> centre_of_mass(const Box<D>& box, const Particles<D>& particles,
   for (int round = 0; round < rounds; ++round) {
     box.wrap(centre);
     const Vec<D> from = centre;
-    centre += share * mean_of([&](const Vec<D>& r) { return box.separation(r, from); });
+    centre += share * sum_of([&](const Vec<D>& r) { return box.separation(r, from); });
   }
   box.wrap(centre);
   return centre;

@@ -179,11 +179,13 @@ TEST_F(MakeObservers, RefuseWhatTheSceneHasNot) {
   disk.bodies = {body};
   body.motion = odpd::BodyMotion::fixed;
   fixed.bodies = {body};
-  auto pushed = disk, heavy_disk = disk;
+  auto pushed = disk, heavy_disk = disk, dragged_disk = disk;
+  dragged_disk.zeta_0 = 0.1;
   pushed.bodies[0].load.force = {{1.0, 0.0}};
   heavy_disk.mass = 1.0;
   const std::string control = "bodies\"\ncontrol = true\nwindow = 1.0\n";
   refused(fixed, control + "name = \"b", {"control", "must be free"});
+  refused(dragged_disk, control + "name = \"b", {"control", "zeta_0"});
   refused(pushed, control + "name = \"b", {"control", "equilibrium"});
   refused(heavy_disk, control + "name = \"b", {"control", "fluid.mass"});
   refused(disk, control + "every = 2\nname = \"b", {"control", "every must be 1"});
