@@ -3,6 +3,8 @@
 // so that the last vector may be computed whole.
 #include <cstdint>
 
+#include "odpd/pairs/weight_columns.h"
+
 namespace odpd::kernels {
 
 /// Directions of the box: differences above half a length are those of another image.
@@ -25,11 +27,6 @@ enum class WeightShape { wendland_c2, wendland_c4, lucy, quintic, square };
 struct WeightParameters {
   WeightShape shape;
   double scale, support;  ///< s, h
-};
-
-/// Columns of W, W', W'' and -W'/r. Those that are null are not wanted.
-struct WeightColumns {
-  double *W, *W_1, *W_2, *slope;
 };
 
 struct EdgeKernels {

@@ -96,8 +96,7 @@ void MdpdModel<D>::write_edges(const PairList<D>& list, const Box<D>& box,
                                          p.b * density_norm(fluid_.r_d, D), fluid_.r_d};
   const auto weigh = [&](const PairNetwork<D>& n, std::size_t begin, std::size_t end,
                          const WeightColumns& columns) {
-    edge_kernels().weights(weight, static_cast<int>(end - begin), &n.r[begin],
-                           {columns.W, columns.W_1, columns.W_2, columns.slope});
+    edge_kernels().weights(weight, static_cast<int>(end - begin), &n.r[begin], columns);
   };
   const auto fill = [&](PairNetwork<D>& n, std::size_t begin, std::size_t end, double* W_2) {
     weigh(n, begin, end, {.W_2 = W_2});

@@ -43,8 +43,7 @@ SmoothingKernel::SmoothingKernel(Shape shape, int dimension, double support)
 void SmoothingKernel::operator()(std::span<const double> r, const WeightColumns& columns) const {
   const auto& table = for_isa(kernels::edge_portable, kernels::edge_avx2, kernels::edge_avx512);
   table.weights({static_cast<kernels::WeightShape>(shape_), scale_, support_},
-                static_cast<int>(r.size()), r.data(),
-                {columns.W, columns.W_1, columns.W_2, columns.slope});
+                static_cast<int>(r.size()), r.data(), columns);
 }
 
 const std::vector<std::string>& smoothing_kernel_names() {
