@@ -78,9 +78,10 @@ TEST(WallKeys, WallsMeetInCorners) {
   for (std::size_t i = 0; i < particles.group.size(); ++i) {
     if (particles.is_free(i)) continue;
     ++frozen;
-    for (std::size_t j = 0; j < i; ++j)
-      if (!particles.is_free(j))
-        EXPECT_GT(norm(particles.position[i] - particles.position[j]), 0.49);
+    for (std::size_t j = 0; j < i; ++j) {
+      if (particles.is_free(j)) continue;
+      EXPECT_GT(norm(particles.position[i] - particles.position[j]), 0.49);
+    }
   }
   EXPECT_EQ(frozen, 16 * 16 - 10 * 10);
 }
