@@ -109,7 +109,7 @@ if limited 8000000 --version >"$out_text" 2>&1; then
   expect_error 2 limited 8000000 run channel --dry-run --set 'wall.0.layers=[{depth=0.0, spacing=1e-9}]' -- wall.layers
   expect_error 2 limited 8000000 run box --dry-run --set fluid.density=1e30 -- 'not enough memory' EiB fluid.density
   # The particles fit, what lies between them does not.
-  expect_error 2 limited 400000 run box --dry-run --set 'box.size=[500.0, 500.0]' --set start.relax_sweeps=0 -- \
+  expect_error 2 limited 350000 run box --dry-run --set 'box.size=[500.0, 500.0]' --set start.relax_sweeps=0 -- \
     'not enough memory' '1e+06 particles' GiB 'fluid.density'
   expect test ! -e runs
 else

@@ -126,8 +126,11 @@ TEST(WallKeys, BodiesTakeTheRoomOfFluid) {
   const auto by_count = cases::settings<2>(wet_box, {"fluid.count=381"});
   EXPECT_NEAR(by_count.model->reference_state(0.0)->density, 4.0, 1e-12);
   EXPECT_EQ(Scene<2>(by_count).particles().free_count(), 381);
-  support::expect_error<ConfigError>([] { cases::settings<2>(wet_box, {"fluid.density=0.18"}); },
-                                     {"fluid.density", "no room", "19", "18"});
+  support::expect_error<ConfigError>(
+      [] {
+        cases::settings<2>(wet_box, {"fluid.density=0.18", "fluid.support=2.0"});
+      },
+      {"fluid.density", "no room", "19", "18"});
   // What a start file must hold.
   EXPECT_EQ(cases::settings<2>(wet_box, {"fluid.density=4.0", "start.from=\"file\"",
                                          "start.file=\"particles.csv\""})
