@@ -35,8 +35,8 @@ Results long_run(const std::vector<std::string>& overrides) {
   return simulation.results();
 }
 
-// Half the vorticity for the central form: -0.508(9) of the rate. In the classical form pairs exert torques, of which those inside the body are
-// missing: -0.761(8).
+// Half the vorticity for the central form: -0.508(7) of the rate. In the classical form pairs exert torques, of which those inside the body are
+// missing: -0.768(9).
 TEST(LongSdpdBodies, ADiskOfTwoSupportsTurnsAtHalfTheRateInTheCentralFormOnly) {
   const auto turn = [](const std::string& form, double dt) {
     const Results results = long_run(
