@@ -53,7 +53,7 @@ TEST(LongManyBody, TheLiquidHasItsPressure) {
   expect_value(liquid_run<2>(bulk("40.0", "3.304"), square + sampled), "pressure", 0.0, 0.2);
 }
 
-// Two runs of this length had 7.77(11) together, by both routes; another program 7.38(14) and 7.27(20). One run has an error of 0.15.
+// Of another program, by stress and by test area. Both routes go over the same configurations.
 TEST(LongManyBody, ASlabHasItsTensionByBothRoutes) {
   const Results slab =
       liquid_run<3>("mass = 0.05\nB = 25.0\ndensity = 6.08",
@@ -61,8 +61,14 @@ TEST(LongManyBody, ASlabHasItsTensionByBothRoutes) {
                     "region = { from = [0.0, 0.0, 4.5], to = [6.0, 6.0, 13.5] }\n[integrator]\n"
                     "name = \"monte-carlo\"\n[run]\nequilibrate = 1000\nduration = 12000\n"
                     "[[observe]]\nkind = \"surface-tension\"\n");
-  expect_value(slab, "surface-tension.stress", 7.7, 0.6);
-  expect_value(slab, "surface-tension.test_area", 7.7, 0.6);
+  const Scalar &stress = *slab.find("surface-tension.stress"),
+               &area = *slab.find("surface-tension.test_area");
+  std::printf("tension %.4f(%.4f), %.4f(%.4f)\n", stress.mean, stress.standard_error, area.mean,
+              area.standard_error);
+  EXPECT_LT(stress.standard_error, 0.2);
+  EXPECT_NEAR(stress.mean, 7.38, 3.0 * std::hypot(stress.standard_error, 0.14));
+  EXPECT_NEAR(area.mean, 7.27, 3.0 * std::hypot(area.standard_error, 0.20));
+  EXPECT_NEAR(stress.mean, area.mean, 0.02);
 }
 
 }  // namespace

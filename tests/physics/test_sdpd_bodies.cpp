@@ -3,48 +3,21 @@
 
 #include <cmath>
 
-#include "odpd/app/simulation.h"
+#include "support/sdpd_fluid.h"
 
 namespace odpd {
 namespace {
-
-constexpr const char* sdpd_fluid = R"(
-dimension = 2
-[box]
-size = [18.0, 18.0]
-periodic = [true, true]
-[fluid]
-model = "sdpd"
-density = 1.0
-kT = 0.01
-eta = 1.0
-bulk_modulus = 1.0
-[integrator]
-dt = 0.3
-[solver]
-tolerance = 1e-4
-[output]
-trajectory_every = 0
-)";
-
-Results results_of(const std::string& text, const std::vector<std::string>& overrides) {
-  const Config config = Config::from_text(text, "case.toml", overrides);
-  Simulation<2> simulation(config, read_case(config, "sdpd"));
-  simulation.run([] { return false; }, [] {});
-  return simulation.results();
-}
 
 // Pairs of the central form exert no torque on each other, so that a free disk turns with half the vorticity, -rate/2. The classical
 // form, whose pairs inside a body are no edges, turns it at -.7 of the rate (docs/density-fluids.md). Standard error here:
 // 0.02. What friction heats is the work of the images, which is the stress times the rate.
 TEST(SdpdBodies, ADiskInShearTurnsAtHalfTheRateAndTheHeatIsTheWork) {
   const double rate = 0.1;
-  const Results results =
-      results_of(sdpd_fluid,
-                 {"shear={rate=0.1}", "run={equilibrate=10.0, duration=100.0}",
-                  "body=[{name=\"disk\", shape=\"disk\", radius=3.0, rings=3, positions=[{at=[9.0, "
-                  "9.0]}]}]",
-                  "observe=[{kind=\"bodies\"}, {kind=\"heat\"}, {kind=\"viscosity\"}]"});
+  const Results results = support::sdpd_scene(
+      {"box.size=[18.0, 18.0]", "shear={rate=0.1}", "run={equilibrate=10.0, duration=100.0}",
+       "body=[{name=\"disk\", shape=\"disk\", radius=3.0, rings=3, positions=[{at=[9.0, "
+       "9.0]}]}]",
+       "observe=[{kind=\"bodies\"}, {kind=\"heat\"}, {kind=\"viscosity\"}]"});
   const auto mean = [&](const std::string& name) { return results.find(name)->mean; };
   const Scalar& turn = *results.find("bodies.disk.angular_velocity");
   EXPECT_LT(turn.standard_error, 0.04 * rate);
@@ -60,8 +33,7 @@ TEST(SdpdBodies, ADiskInShearTurnsAtHalfTheRateAndTheHeatIsTheWork) {
 // lack the pairs inside the disk, the energy of the motion is 0.0085 below, the pressure 0.013.
 TEST(SdpdBodies, DiskAndDimersSampleWhatMonteCarloDoes) {
   const auto sample = [](const std::string& scheme) {
-    return results_of(
-        sdpd_fluid,
+    return support::sdpd_scene(
         {"integrator={dt=0.2, name=\"" + scheme + "\"}", "run={equilibrate=20.0, duration=300.0}",
          "box.size=[8.0, 8.0]",
          "body=[{name=\"disk\", shape=\"disk\", radius=0.9, rings=1, positions=[{at=[4.0, 4.0]}]}]",

@@ -4,6 +4,8 @@
 // Its reference values are of Metropolis Monte Carlo by a program of its own (2026-11-29), with the energy sum_i psi(d_i) of sdpd.h at the same
 // N and box; +- standard errors.
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "odpd/app/simulation.h"
 
@@ -28,6 +30,35 @@ struct SdpdRun {
   const char* more = "";  ///< lines of [fluid], and further tables
 };
 
+inline odpd::Results results_of(const std::string& text,
+                                const std::vector<std::string>& overrides = {}) {
+  const odpd::Config config = odpd::Config::from_text(text, "case.toml", overrides);
+  odpd::Simulation<2> simulation(config, odpd::read_case(config, "sdpd"));
+  simulation.run([] { return false; }, [] {});
+  return simulation.results();
+}
+
+/// The fluid with these overrides, which give at least run, and box.size where it is not 20 x 20.
+inline odpd::Results sdpd_scene(const std::vector<std::string>& overrides) {
+  return results_of(R"(
+dimension = 2
+[box]
+size = [20.0, 20.0]
+periodic = [true, true]
+[fluid]
+model = "sdpd"
+density = 1.0
+kT = 0.01
+eta = 1.0
+bulk_modulus = 1.0
+[integrator]
+dt = 0.3
+[solver]
+tolerance = 1e-4
+)",
+                    overrides);
+}
+
 inline odpd::Results sdpd_results(const SdpdReference& fluid, const SdpdRun& run) {
   std::ostringstream text;
   text << "dimension = 2\n[box]\nsize = [" << fluid.edge << ".0, " << fluid.edge
@@ -37,10 +68,7 @@ inline odpd::Results sdpd_results(const SdpdReference& fluid, const SdpdRun& run
        << "\n[solver]\ntolerance = " << run.tolerance
        << "\n[run]\nequilibrate = " << run.equilibrate << "\nduration = " << run.duration
        << "\n[[observe]]\nkind = \"thermo\"\nevery = " << run.every << "\n";
-  const odpd::Config config = odpd::Config::from_text(text.str(), "case.toml");
-  odpd::Simulation<2> simulation(config, odpd::read_case(config, "fluid"));
-  simulation.run([] { return false; }, [] {});
-  return simulation.results();
+  return results_of(text.str());
 }
 
 }  // namespace support
