@@ -10,6 +10,7 @@
 #include "odpd/core/config.h"
 #include "odpd/core/error.h"
 #include "odpd/core/random.h"
+#include "odpd/scene/scene_settings.h"
 
 namespace bench {
 
@@ -64,8 +65,8 @@ std::vector<Vec<D>> round_shape(double radius, double spacing) {
                            std::max<std::int64_t>(1, std::llround(radius / spacing)))
              : fmt::format("shape = \"sphere\"\nradius = {}\npoints_on_sphere = {}", radius,
                            std::llround(4.0 * std::numbers::pi * radius * radius / triangle));
-  odpd::Box<D> large;
-  for (int c = 0; c < D; ++c) large.size[c] = 100.0 * radius;
+  odpd::SceneSettings<D> large;
+  for (int c = 0; c < D; ++c) large.box.size[c] = 100.0 * radius;
   return odpd::read_body<D>(odpd::Config::from_text(text, "benchmark"), large).shape;
 }
 

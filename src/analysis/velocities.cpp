@@ -64,12 +64,16 @@ Velocities<D>::Velocities(ObserverSettings settings, VelocitiesSettings velociti
 
 template <int D>
 void Velocities<D>::add_kind(std::string name, double population, std::size_t particles) {
+  kinds_.push_back({std::move(name), population, variance_of(particles)});
+}
+
+template <int D>
+double Velocities<D>::variance_of(std::size_t particles) const {
   const auto p = static_cast<double>(particles);
   const double share = scene_.conserves_momentum()
                            ? p / static_cast<double>(scene_.particles().moving_count())
                            : 0.0;
-  kinds_.push_back({std::move(name), population,
-                    scene_.largest_kT() / (p * scene_.settings().mass) * (1.0 - share)});
+  return scene_.largest_kT() / (p * scene_.settings().mass) * (1.0 - share);
 }
 
 template <int D>
@@ -137,7 +141,12 @@ void Velocities<D>::measure(const Clock&, const Particles<D>& particles,
     Vec<D> centre{};
     for (const std::int64_t id : body.members)
       centre += (1.0 / static_cast<double>(body.members.size())) * v[index(index_of[index(id)])];
-    count(first_body_ + scene_.body_kind(b), centre, sample);
+    // Bodies of one kind may differ in size: each in units of its own variance.
+    const std::size_t kind = first_body_ + scene_.body_kind(b);
+    const double own_variance = variance_of(body.members.size());
+    if (own_variance != kinds_[kind].variance)
+      centre *= std::sqrt(kinds_[kind].variance / own_variance);
+    count(kind, centre, sample);
   }
   own.ranks->sum(std::span(sample));
   this->add(std::move(sample));

@@ -96,9 +96,10 @@ MemoryNeed memory_need(const SceneSettings<D>& scene) {
   double in_bodies = 0.0, within_bodies = 0.0;
   for (const BodySettings<D>& body : scene.bodies) {
     const double bodies = static_cast<double>(body.bodies());
-    const double constituents = bodies * static_cast<double>(body.shape.size());
+    const auto constituents = static_cast<double>(body.particles());
     in_bodies += constituents;
-    within_bodies += bodies * inner_pairs(body.shape, r_c);
+    if (body.shapes.empty()) within_bodies += bodies * inner_pairs(body.shape, r_c);
+    for (const auto& shape : body.shapes) within_bodies += inner_pairs(shape, r_c);
     if (body.motion != BodyMotion::free) continue;
     need.size.bodies += bodies;
     need.size.constituents += constituents;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "odpd/core/config.h"
 #include "odpd/core/error.h"
 
 namespace odpd {
@@ -211,6 +212,13 @@ std::vector<std::pair<std::string, std::string>> flat_values(const ConfigNode& n
     values.emplace_back(node.path, value_text(node));
   }
   return values;
+}
+
+bool Config::is_array(const std::string& key) const {
+  return has(key) && node_->table()->find(key)->array() != nullptr;
+}
+bool Config::is_table(const std::string& key) const {
+  return has(key) && node_->table()->find(key)->table() != nullptr;
 }
 
 }  // namespace odpd

@@ -17,9 +17,24 @@
 namespace odpd {
 
 template <int D>
-double BodySettings<D>::radius() const {
+std::int64_t BodySettings<D>::particles() const {
+  if (shapes.empty()) return bodies() * static_cast<std::int64_t>(shape.size());
+  std::int64_t all = 0;
+  for (const auto& one : shapes) all += static_cast<std::int64_t>(one.size());
+  return all;
+}
+
+template <int D>
+double BodySettings<D>::radius(std::size_t body) const {
   double most = 0.0;
-  for (const Vec<D>& b : shape) most = std::max(most, norm(b));
+  for (const Vec<D>& b : shape_of(body)) most = std::max(most, norm(b));
+  return most;
+}
+
+template <int D>
+double BodySettings<D>::radius() const {
+  double most = radius(0);
+  for (std::size_t k = 1; k < shapes.size(); ++k) most = std::max(most, radius(k));
   return most;
 }
 
@@ -39,8 +54,14 @@ namespace {
 
 // Half the clearance around a body is its own.
 template <int D>
-double reach_of(const BodySettings<D>& s) {
-  return s.radius() + 0.5 * s.clearance;
+double reach_of(const BodySettings<D>& s, std::size_t body) {
+  return s.radius(body) + 0.5 * s.clearance;
+}
+template <int D>
+std::vector<double> reaches_of(const BodySettings<D>& s) {
+  std::vector<double> reaches(index(s.bodies()), reach_of(s, 0));
+  for (std::size_t k = 1; k < s.shapes.size(); ++k) reaches[k] = reach_of(s, k);
+  return reaches;
 }
 
 template <int D>
@@ -52,10 +73,14 @@ bool is_placed_at_random(const BodySettings<D>& s) {
 template <int D>
 double random_volume(const std::vector<BodySettings<D>>& settings, double largest) {
   double volume = 0.0;
-  for (const BodySettings<D>& s : settings)
-    if (is_placed_at_random(s))
-      volume += static_cast<double>(s.count) * unit_ball_volume<D> *
-                std::pow(std::clamp(reach_of(s), 0.0, largest), D);
+  const auto ball = [&](double reach) {
+    return unit_ball_volume<D> * std::pow(std::clamp(reach, 0.0, largest), D);
+  };
+  for (const BodySettings<D>& s : settings) {
+    if (!is_placed_at_random(s)) continue;
+    if (s.shapes.empty()) volume += static_cast<double>(s.count) * ball(reach_of(s, 0));
+    for (std::size_t k = 0; k < s.shapes.size(); ++k) volume += ball(reach_of(s, k));
+  }
   return volume;
 }
 
@@ -63,7 +88,8 @@ double random_volume(const std::vector<BodySettings<D>>& settings, double larges
 template <int D>
 ConfigError no_room(const std::vector<BodySettings<D>>& settings, double space,
                     const std::optional<RandomPlaces<D>>& found) {
-  constexpr const char* remedy = "lower count or clearance, give positions, or use a larger box";
+  constexpr const char* remedy =
+      "lower count, fraction or clearance, give positions, or use a larger box";
   std::vector<std::string> names;
   std::int64_t bodies = 0;
   for (const BodySettings<D>& s : settings) {
@@ -74,7 +100,7 @@ ConfigError no_room(const std::vector<BodySettings<D>>& settings, double space,
       return ConfigError(fmt::format(
           "[[body]] '{}': no room was found even for one body alone, which with half its clearance "
           "around it is {:.6g} across: {}",
-          s.name, 2.0 * reach_of(s), remedy));
+          s.name, 2.0 * reach_of(s, found->centres.size() - index(bodies - s.count)), remedy));
   }
   constexpr double any = std::numeric_limits<double>::infinity();
   const double fraction = random_volume(settings, any) / space;
@@ -100,11 +126,13 @@ RandomPlaces<D> places_of_bodies(const std::vector<BodySettings<D>>& settings, c
   BallCells<D> there(box);
   std::vector<double> reaches;
   for (const BodySettings<D>& s : settings) {
-    for (Vec<D> centre : s.positions) {
+    const std::vector<double> own = reaches_of(s);
+    for (std::size_t k = 0; k < s.positions.size(); ++k) {
+      Vec<D> centre = s.positions[k];
       box.wrap(centre);
-      there.add(centre, reach_of(s));
+      there.add(centre, own[k]);
     }
-    if (is_placed_at_random(s)) reaches.insert(reaches.end(), index(s.count), reach_of(s));
+    if (is_placed_at_random(s)) reaches.insert(reaches.end(), own.begin(), own.end());
   }
   RandomPlaces<D> found = find_random_places<D>(box, low, high, there, reaches, seed);
   if (found.scale < 1.0) throw no_room<D>(settings, space, found);
@@ -139,8 +167,9 @@ std::vector<std::size_t> place_bodies(const std::vector<BodySettings<D>>& settin
   for (const bool known : {false, true})
     for (std::size_t k = 0; k < settings.size(); ++k) {
       if ((settings[k].motion != BodyMotion::free) != known) continue;
-      for (const RigidPose<D>& pose : poses[k]) {
-        particles.add_body({{}, settings[k].shape, known, pose}, box, settings[k].species);
+      for (std::size_t n = 0; n < poses[k].size(); ++n) {
+        particles.add_body({{}, settings[k].shape_of(n), known, poses[k][n]}, box,
+                           settings[k].species);
         kind.push_back(k);
       }
     }

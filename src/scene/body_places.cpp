@@ -191,10 +191,12 @@ void check_body_positions(const Config& config, const SceneSettings<D>& scene) {
   PlacedBodies<D> placed(scene.box);
   for (std::size_t kind = 0; kind < scene.bodies.size(); ++kind) {
     const BodySettings<D>& s = scene.bodies[kind];
-    const double spacing = s.positions.empty() ? 0.0 : spacing_of<D>(s.shape);
+    double spacing = 0.0;
     for (std::size_t n = 0; n < s.positions.size(); ++n) {
-      const PlacedBody<D> body{
-          kind, static_cast<std::int64_t>(n) + 1, s.positions[n], s.shape, s.radius(), spacing};
+      if (n == 0 || !s.shapes.empty()) spacing = spacing_of<D>(s.shape_of(n));
+      const PlacedBody<D> body{kind,           static_cast<std::int64_t>(n) + 1,
+                               s.positions[n], s.shape_of(n),
+                               s.radius(n),    spacing};
       check_ends(entries[kind], scene, body);
       check_walls(entries[kind], scene, body);
       if (const PlacedBody<D>* other = placed.first_in(body, 1.0))
@@ -214,15 +216,16 @@ void check_start_bodies(const SceneSettings<D>& scene, const std::vector<std::si
   constexpr double same_place = 1e-3;
   PlacedBodies<D> placed(scene.box);
   std::vector<std::int64_t> count(scene.bodies.size(), 0);
-  std::vector<double> radius, spacing;  // of each [[body]]
-  for (const BodySettings<D>& s : scene.bodies) {
-    radius.push_back(s.radius());
-    spacing.push_back(spacing_of<D>(s.shape));
-  }
+  std::vector<double> spacing;  // of each [[body]] of one size
+  for (const BodySettings<D>& s : scene.bodies) spacing.push_back(spacing_of<D>(s.shape));
   for (std::size_t b = 0; b < particles.bodies.size(); ++b) {
     const RigidBody<D>& body = particles.bodies[b];
-    PlacedBody<D> here{kind[b], ++count[kind[b]], body.pose.centre,
-                       {},      radius[kind[b]],  spacing[kind[b]]};
+    const BodySettings<D>& s = scene.bodies[kind[b]];
+    const std::int64_t number = ++count[kind[b]];
+    const auto n = static_cast<std::size_t>(number - 1);
+    PlacedBody<D> here{
+        kind[b], number,      body.pose.centre,
+        {},      s.radius(n), s.shapes.empty() ? spacing[kind[b]] : spacing_of<D>(s.shape_of(n))};
     for (const Vec<D>& point : body.frame) here.arms.push_back(body.pose.orientation.turn(point));
     const Depth<D> depth = depth_in_walls(scene, here, true);
     if (depth.wall != nullptr && depth.least > rounding(scene, depth.wall->axis))

@@ -10,19 +10,9 @@
 #include "odpd/core/index.h"
 #include "odpd/core/random.h"
 #include "odpd/operator/edge_sums.h"
+#include "odpd/scene/body_room.h"
 
 namespace odpd {
-
-template <int D>
-BallCells<D> balls_of_bodies(const Box<D>& box, const Particles<D>& particles) {
-  BallCells<D> balls(box);
-  for (const RigidBody<D>& body : particles.bodies) {
-    double radius = 0.0;
-    for (const Vec<D>& b : body.frame) radius = std::max(radius, norm(b));
-    balls.add(body.pose.centre, radius);
-  }
-  return balls;
-}
 
 namespace {
 
@@ -73,7 +63,7 @@ std::vector<Vec<D>> random_points(std::uint64_t seed, const Box<D>& box,
                                   const Particles<D>& particles) {
   constexpr std::uint64_t most_attempts = 1000;
   const CounterRandom random(seed, Stream::start_positions);
-  const BallCells<D> bodies = balls_of_bodies(box, particles);
+  const BodyRoom<D> bodies(box, particles);
   std::vector<Vec<D>> points(index(count));
   for (std::int64_t k = 0; k < count; ++k) {
     Vec<D>& point = points[index(k)];
@@ -81,7 +71,7 @@ std::vector<Vec<D>> random_points(std::uint64_t seed, const Box<D>& box,
       const auto u = random.uniforms(0, attempt, static_cast<std::uint64_t>(k), 0);
       for (int c = 0; c < D; ++c)
         point[c] = region.from[c] + (region.to[c] - region.from[c]) * u[index(c)];
-      if (region.holds(point) && !bodies.overlaps(point, 0.0)) break;
+      if (region.holds(point) && !bodies.holds(point)) break;
       if (attempt + 1 == most_attempts)
         throw ConfigError(
             "no room was found for the fluid: the bodies fill the space where it starts");
@@ -327,8 +317,6 @@ template void draw_velocities<2>(std::uint64_t, double, double, bool,
                                  const std::function<Vec<2>(const Vec<2>&)>&, Particles<2>&);
 template void draw_velocities<3>(std::uint64_t, double, double, bool,
                                  const std::function<Vec<3>(const Vec<3>&)>&, Particles<3>&);
-template BallCells<2> balls_of_bodies<2>(const Box<2>&, const Particles<2>&);
-template BallCells<3> balls_of_bodies<3>(const Box<3>&, const Particles<3>&);
 template void place_walls<2>(const SceneSettings<2>&, Particles<2>&);
 template void place_walls<3>(const SceneSettings<3>&, Particles<3>&);
 template void place_fluid<2>(const SceneSettings<2>&, const Vec<2>&, const Vec<2>&, Particles<2>&);

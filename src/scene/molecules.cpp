@@ -9,6 +9,7 @@
 #include "odpd/core/index.h"
 #include "odpd/core/random.h"
 #include "odpd/scene/bodies.h"
+#include "odpd/scene/body_room.h"
 #include "odpd/scene/fill.h"
 
 namespace odpd {
@@ -27,7 +28,7 @@ class Room {
         low_(low),
         high_(high),
         random_(seed, Stream::molecules),
-        bodies_(balls_of_bodies(box, particles)) {}
+        bodies_(box, particles) {}
 
   /// Unwrapped positions of the beads of molecule `number`; none where there is no room.
   std::vector<Vec<D>> beads(const MoleculeSettings<D>& m, std::uint64_t number) const {
@@ -44,7 +45,7 @@ class Room {
     for (int c = 0; c < D; ++c)
       if (!box_.is_periodic(c) && !(r[c] >= low_[c] && r[c] <= high_[c])) return false;
     box_.wrap(r);
-    return !bodies_.overlaps(r, 0.0);
+    return !bodies_.holds(r);
   }
 
   Vec<D> centre(std::uint64_t attempt, std::uint64_t number) const {
@@ -88,7 +89,7 @@ class Room {
   const Box<D>& box_;
   Vec<D> low_, high_;
   CounterRandom random_;
-  const BallCells<D> bodies_;
+  const BodyRoom<D> bodies_;
 };
 
 }  // namespace

@@ -283,7 +283,7 @@ std::int64_t SceneSettings<D>::molecule_beads() const {
 template <int D>
 std::int64_t SceneSettings<D>::body_particles() const {
   std::int64_t particles = 0;
-  for (const auto& b : bodies) particles += b.bodies() * static_cast<std::int64_t>(b.shape.size());
+  for (const auto& b : bodies) particles += b.particles();
   return particles;
 }
 
@@ -333,7 +333,7 @@ SceneSettings<D> read_scene_settings(const Config& config,
   read_walls(config, scene);
   read_place(config.table("start"), scene);
   for (const Config& entry : config.tables("body")) {
-    scene.bodies.push_back(read_body<D>(entry, scene.box));
+    scene.bodies.push_back(read_body<D>(entry, scene));
     const std::string& name = scene.bodies.back().name;
     for (std::size_t k = 0; k + 1 < scene.bodies.size(); ++k)
       if (scene.bodies[k].name == name)

@@ -71,6 +71,22 @@ TEST(Velocities, OfParticlesAndCentresRelativeToTheMean) {
               (0.16 + 0.04 + 0.09 + 0.01) / 4.0, 1e-14);
 }
 
+// By hand: of bodies of two and four particles among ten the variances are .25/2 (1 - 2/10) and .25/4 (1 - 4/10).
+TEST(Velocities, OfBodiesOfSeveralSizesInUnitsOfTheirOwn) {
+  odpd::SceneSettings<2> s = six();
+  odpd::BodySettings<2>& body = s.bodies[0];
+  body.shapes = {body.shape, {{{-0.1, 0.1}}, {{0.1, 0.1}}, {{-0.1, -0.1}}, {{0.1, -0.1}}}};
+  body.positions.push_back({{8.0, 5.0}});
+  const Scene<2> scene(s);
+  ASSERT_EQ(scene.particles().moving_count(), 10);
+  std::vector<Vec<2>> v(10, {{0.0, -0.1}});
+  for (std::size_t k = 0; k < 6; ++k) v[k] = k < 2 ? Vec<2>{{0.6, 0.0}} : Vec<2>{{-0.3, 0.1}};
+  auto velocities = observer(scene);
+  velocities.measure(Clock{}, scene.particles(), record_of(scene, v));
+  EXPECT_NEAR(records::mean(records::results(velocities), "v.body.pair.ratio"),
+              (0.36 / 0.1 + 0.1 / 0.0375) / 4.0, 1e-12);
+}
+
 // Of what is beyond the range the histogram shows nothing, but the variance does; bins are 1/2 wide.
 TEST(Velocities, HistogramIsADensity) {
   const Scene<2> scene(six());

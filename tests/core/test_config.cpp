@@ -105,6 +105,11 @@ TEST(Config, tables_and_arrays_of_tables) {
   EXPECT_EQ(absent.text("file", "x.h5"), "x.h5");
   EXPECT_FALSE(absent.has("file")) << "a default is not part of the case";
   EXPECT_FALSE(c.has("start"));
+  const Config kinds = Config::from_text("a = [1]\nb = { c = 1 }\nd = 1\n[[e]]\n", "t");
+  for (const char* key : {"a", "b", "d", "e", "none"}) {
+    EXPECT_EQ(kinds.is_array(key), std::string("ae").find(key) != std::string::npos) << key;
+    EXPECT_EQ(kinds.is_table(key), std::string(key) == "b") << key;
+  }
   const Config inlined = Config::from_text("wall = [{x = 1}, {x = 2}]\nnone = []\nbad = [1]", "t");
   EXPECT_EQ(inlined.tables("wall").at(1).integer("x"), 2);
   EXPECT_TRUE(inlined.tables("none").empty());

@@ -44,4 +44,16 @@ odpd::SceneSettings<D> settings(const std::string& text,
   return odpd::read_scene_settings<D>(odpd::Config::from_text(text, "case.toml", overrides));
 }
 
+/// A periodic cube with one [[body]] of these keys.
+inline std::string body_in(double edge, const std::string& keys,
+                           const std::string& fluid = "density = 3.0\n") {
+  const std::string e = std::to_string(edge);
+  return "seed = 5\n[box]\nsize = [" + e + ", " + e + ", " + e +
+         "]\nperiodic = [true, true, true]\n[fluid]\na = 18.75\ngamma = 4.5\nkT = 1.0\n" + fluid +
+         "[[body]]\nname = \"b\"\n" + keys;
+}
+inline const odpd::BodySettings<3>& first_body(const odpd::SceneSettings<3>& s) {
+  return s.bodies.at(0);
+}
+
 }  // namespace cases

@@ -290,7 +290,7 @@ TEST(RandomPlaces, MessagesSayWhatWasReached) {
   };
   refuse(std::sqrt(200.0 * std::numbers::pi / 0.95), random_disks("a", 150) + random_disks("b", 50),
          {"[[body]] 'a', 'b'", "all 200 bodies", "0.95 of the area", "0.8", "was reached",
-          "about 17", "lower count or clearance"});
+          "about 17", "lower count, fraction or clearance"});
   refuse(10.0, random_disks("a", 1000000000),
          {"[[body]] 'a'", "1000000000 bodies", "3.14e+07 of the area, more than there is"});
   refuse(10.0,

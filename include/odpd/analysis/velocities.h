@@ -34,13 +34,15 @@ class Velocities : public Observer<D> {
   struct Kind {
     std::string name;
     double population = 0.0;
-    double variance = 0.0;  ///< the exact one (length^2/time^2)
+    double variance = 0.0;  ///< the exact one (length^2/time^2); of bodies that of the first
   };
   std::size_t columns() const { return 1 + velocities_.bins; }
   double bin_width() const {
     return 2.0 * velocities_.range / static_cast<double>(velocities_.bins);
   }
   void add_kind(std::string name, double population, std::size_t particles);
+  /// Of the mean velocity of so many particles.
+  double variance_of(std::size_t particles) const;
   void count(std::size_t kind, const Vec<D>& v, std::vector<double>& sample) const;
 
   VelocitiesSettings velocities_;

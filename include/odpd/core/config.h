@@ -37,6 +37,9 @@ class Config {
   bool has(const std::string& key) const;
   /// The same of a key that nobody takes here: messages do not suggest it.
   bool gives(const std::string& key) const;
+  /// What the case gives there, for keys that take several kinds of values. Does not count as reading either.
+  bool is_array(const std::string& key) const;
+  bool is_table(const std::string& key) const;
 
   // Required values: ConfigError when missing, of another type, or not finite.
   double number(const std::string& key) const;  ///< a TOML integer is accepted as a number

@@ -36,6 +36,7 @@ enum class Stream : std::uint64_t {
   /// Positions of molecules (attempt, 0, molecule, 0), turns (attempt, 1, molecule, 0), steps of a walk
   /// (attempt, 2 + trial, molecule, bead).
   molecules = 12,
+  body_sizes = 13,  ///< radii of bodies (0, 0, which [[body]], which of its bodies)
 };
 
 /// Uniform and normal numbers of one seed and stream.

@@ -12,11 +12,16 @@ namespace odpd {
 
 enum class BodyMotion { fixed, given, free };
 
-/// One [[body]]: bodies of one shape.
+template <int D>
+struct SceneSettings;
+
+/// One [[body]]: bodies of one shape, perhaps of several sizes.
 template <int D>
 struct BodySettings {
   std::string name = "body";
-  std::vector<Vec<D>> shape;  ///< constituents, about their centre (length)
+  /// Constituents, about their centre (length): of all bodies, or where there are `shapes` of the first.
+  std::vector<Vec<D>> shape;
+  std::vector<std::vector<Vec<D>>> shapes;  ///< of each body in turn, where they differ in size
   BodyMotion motion = BodyMotion::free;
   std::int32_t species = 0;
   std::int64_t count = 1;         ///< at random positions, where there are no `positions`
@@ -28,13 +33,20 @@ struct BodySettings {
   std::int64_t bodies() const {
     return positions.empty() ? count : static_cast<std::int64_t>(positions.size());
   }
-  /// Distance of the outermost constituent from the centre.
+  const std::vector<Vec<D>>& shape_of(std::size_t body) const {
+    return shapes.empty() ? shape : shapes[body];
+  }
+  /// Constituents of all bodies.
+  std::int64_t particles() const;
+  /// Distance of the outermost constituent from the centre, of one body and of the largest.
+  double radius(std::size_t body) const;
   double radius() const;
 };
 
-/// Reads one [[body]] but its species. Throws ConfigError, also for a shape as long as half of a periodic edge of the box.
+/// Reads one [[body]] but its species. Of the scene it needs box, walls, seed and how many [[body]] are before this one, whose radii
+/// are others. Throws ConfigError, also for a body as long as half of an edge of the box.
 template <int D>
-BodySettings<D> read_body(const Config& entry, const Box<D>& box);
+BodySettings<D> read_body(const Config& entry, const SceneSettings<D>& scene);
 
 /// Turns a body as uniform random numbers u say: uniform over all orientations.
 void turn_at_random(const std::array<double, 4>& u, Rotation<2>& orientation);

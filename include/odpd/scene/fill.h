@@ -5,15 +5,10 @@
 #include <vector>
 
 #include "odpd/dynamics/surroundings.h"
-#include "odpd/geometry/ball_cells.h"
 #include "odpd/pairs/pair_model.h"
 #include "odpd/scene/scene_settings.h"
 
 namespace odpd {
-
-/// Balls around the bodies' centres, as large as their outermost constituents are far away: nothing else is placed in them.
-template <int D>
-BallCells<D> balls_of_bodies(const Box<D>& box, const Particles<D>& particles);
 
 /// Adds the particles of all walls, group k + 1 for walls[k].
 template <int D>
