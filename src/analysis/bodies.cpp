@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "odpd/analysis/frozen.h"
 #include "odpd/core/index.h"
 #include "odpd/operator/edge_sums.h"
 
@@ -230,7 +231,6 @@ void Bodies<D>::count_fluid(const Particles<D>& particles, const Stage<D>& stage
 template <int D>
 void Bodies<D>::add_growth(const Particles<D>& particles, const StepRecord<D>& record) {
   const std::vector<int>& directions = bodies_.msd.directions;
-  const PairNetwork<D>& network = record.start.network;
   for (std::size_t kind = 0; kind < growth_.size(); ++kind) {
     std::vector<double> way, made, response;
     for (std::size_t b = 0; b < kind_.size(); ++b) {
@@ -243,19 +243,10 @@ void Bodies<D>::add_growth(const Particles<D>& particles, const StepRecord<D>& r
         if (!growth_[kind].control_is_due()) continue;
         std::vector<Vec<D>> force(record.v_mid.size());
         for (const std::int32_t p : members_[b]) force[index(p)][c] = share;
-        const std::vector<Vec<D>> w = record.respond(force, bodies_.control.tolerance);
-        std::array<double, 2> sums{};  // w.xi, w.R w
-        for (std::size_t edge = 0; edge < index(network.size()); ++edge) {
-          if (!network.counts(edge)) continue;
-          const Vec<D> slip = w[index(network.i[edge])] - w[index(network.j[edge])];
-          sums[0] += dot(record.edge_noise[edge], slip);
-          sums[1] -= dot(slip, friction_of<D>(network, edge, slip));
-        }
-        particles.ranks().sum(std::span(sums));
-        double mobility = 0.0;
-        for (const std::int32_t p : members_[b]) mobility += share * w[index(p)][c];
-        made.push_back(record.dt * sums[0]);
-        response.push_back(2.0 * mobility - sums[1]);
+        const ForceAnswer<D> answer =
+            answer_to_force(particles, record, force, 0.0, bodies_.control.tolerance);
+        made.push_back(record.dt * answer.noise);
+        response.push_back(answer.mobility);
       }
     }
     growth_[kind].add(way, made, response);

@@ -1,50 +1,30 @@
 #include "odpd/analysis/helfand.h"
 
-#include "odpd/analysis/force_points.h"
+#include "odpd/analysis/frozen.h"
 #include "odpd/analysis/stress.h"
 #include "odpd/core/index.h"
-#include "odpd/operator/edge_sums.h"
 
 namespace odpd {
 
 namespace {
 
-// The slip at r in the flow of rate 1 that belongs to a component. Without friction across e: shear of the plane a, b, or with
-// `second` stretching along a and compression along b. With it: flow along a with its gradient along b, or the other way round.
+// The flow of rate 1 that belongs to a component. Without friction across e: shear of the plane a, b, or with `second` stretching
+// along a and compression along b. With it: flow along a with its gradient along b, or the other way round.
 template <int D>
-Vec<D> strained(int a, int b, bool second, bool transverse, const Vec<D>& r) {
-  Vec<D> slip{};
-  if (transverse) {
-    slip[second ? b : a] = r[second ? a : b];
-    return slip;
-  }
-  slip[a] = 0.5 * r[second ? a : b];
-  slip[b] = second ? -0.5 * r[b] : 0.5 * r[a];
-  return slip;
+Gradient<D> strain(int a, int b, bool second, bool transverse) {
+  if (transverse) return second ? shear_gradient<D>(b, a) : shear_gradient<D>(a, b);
+  Gradient<D> E{};
+  E[index(a)][second ? a : b] = 0.5;
+  E[index(b)][second ? b : a] = second ? -0.5 : 0.5;
+  return E;
 }
 
-// What belongs to the flow that slips by flow(r) at an edge of vector r.
-template <int D, class Flow>
-void add_flow(const Particles<D>& particles, const StepRecord<D>& record, double tolerance,
-              const Flow& flow, HelfandControl& control) {
-  const PairNetwork<D>& network = record.start.network;
-  const ForcePoints<D> points(particles, record.start);
-  const std::size_t edges = index(network.size());
-  const auto affine = [&](std::size_t k) { return flow(points.between(network, k)); };
-  std::vector<Vec<D>> friction(edges), load(record.start.position.size());
-  for (std::size_t k = 0; k < edges; ++k)
-    friction[k] = -1.0 * friction_of<D>(network, k, affine(k));
-  add_edge_forces<D>(network, friction, load);
-  const std::vector<Vec<D>> w = record.respond(load, tolerance);
-  double along_noise = 0.0, power = 0.0;
-  for (std::size_t k = 0; k < edges; ++k) {
-    if (!network.counts(k)) continue;
-    const Vec<D> slip = affine(k) - w[index(network.i[k])] + w[index(network.j[k])];
-    power -= dot(slip, friction_of<D>(network, k, slip));
-    along_noise += dot(record.edge_noise[k], slip);
-  }
-  control.made.push_back(-record.dt * particles.ranks().sum(along_noise));
-  control.response.push_back(particles.ranks().sum(power));
+template <int D>
+void add_flow(const Particles<D>& particles, const StepRecord<D>& record, const Gradient<D>& E,
+              double tolerance, HelfandControl& control) {
+  const FlowAnswer answer = answer_to_flow(particles, record, E, tolerance);
+  control.made.push_back(-record.dt * answer.noise);
+  control.response.push_back(answer.power);
 }
 
 }  // namespace
@@ -80,9 +60,7 @@ HelfandControl helfand_control(const Particles<D>& particles, const StepRecord<D
   for (int a = 0; a < D; ++a)
     for (int b = a + 1; b < D; ++b)
       for (const bool second : {false, true})
-        add_flow(
-            particles, record, tolerance,
-            [&](const Vec<D>& r) { return strained(a, b, second, transverse, r); }, control);
+        add_flow(particles, record, strain<D>(a, b, second, transverse), tolerance, control);
   return control;
 }
 
@@ -90,14 +68,7 @@ template <int D>
 HelfandControl shear_control(const Particles<D>& particles, const StepRecord<D>& record, int flow,
                              int gradient, double tolerance) {
   HelfandControl control;
-  add_flow(
-      particles, record, tolerance,
-      [&](const Vec<D>& r) {
-        Vec<D> slip{};
-        slip[flow] = r[gradient];
-        return slip;
-      },
-      control);
+  add_flow(particles, record, shear_gradient<D>(flow, gradient), tolerance, control);
   return control;
 }
 

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "odpd/analysis/current_modes.h"
+#include "odpd/analysis/frozen.h"
 #include "odpd/analysis/mode_keys.h"
 #include "odpd/core/index.h"
-#include "odpd/operator/edge_sums.h"
 
 namespace odpd {
 
@@ -94,25 +94,12 @@ void Modes<D>::measure(const Clock&, const Particles<D>& particles, const StepRe
 template <int D>
 void Modes<D>::solve_modes(const Particles<D>& particles, const StepRecord<D>& record,
                            std::vector<double>& made, std::vector<double>& response) const {
-  const Share own = particles.owned();
-  const PairNetwork<D>& network = record.start.network;
   for (const auto& mode : waves_.modes()) {
-    const std::vector<Vec<D>> phi = waves_.shape(mode, record.start.position);
-    const std::vector<Vec<D>> w = record.respond(phi, control_tolerance_);
-    double along_noise = 0.0, power = 0.0, along_phi = 0.0;
-    for (std::size_t edge = 0; edge < index(network.size()); ++edge) {
-      if (!network.counts(edge)) continue;
-      const Vec<D> slip = w[index(network.i[edge])] - w[index(network.j[edge])];
-      power -= dot(slip, friction_of<D>(network, edge, slip));
-      along_noise += dot(record.edge_noise[edge], slip);
-    }
-    for (auto i = index(own.first); i < index(own.end(std::ssize(w))); ++i)
-      along_phi += dot(phi[i], w[i]);
-    made.push_back(dt_ * along_noise);
-    response.push_back(2.0 * along_phi - power);
+    const ForceAnswer<D> answer = answer_to_force(
+        particles, record, waves_.shape(mode, record.start.position), 0.0, control_tolerance_);
+    made.push_back(dt_ * answer.noise);
+    response.push_back(answer.mobility);
   }
-  own.ranks->sum(made);
-  own.ranks->sum(response);
 }
 
 template <int D>

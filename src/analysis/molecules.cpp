@@ -14,24 +14,6 @@ namespace {
 constexpr std::size_t shape_columns = 4;
 
 template <int D>
-std::vector<std::array<std::size_t, 2>> bond_tree(const MoleculeSettings<D>& m) {
-  std::vector<std::array<std::size_t, 2>> tree;
-  std::vector<bool> reached(m.shape.size(), false);
-  reached[0] = true;
-  while (tree.size() + 1 < m.shape.size()) {
-    const std::size_t before = tree.size();
-    for (const auto& bond : m.bonds) {
-      const auto i = index(bond.i), j = index(bond.j);
-      if (reached[i] == reached[j]) continue;
-      tree.push_back(reached[i] ? std::array{i, j} : std::array{j, i});
-      reached[i] = reached[j] = true;
-    }
-    if (tree.size() == before) break;
-  }
-  return tree;
-}
-
-template <int D>
 std::vector<std::string> names_of_molecules(const Scene<D>& scene) {
   std::vector<std::string> names;
   for (const auto& m : scene.settings().molecules) names.push_back(m.name);
@@ -54,13 +36,13 @@ MoleculeStatistics<D>::MoleculeStatistics(ObserverSettings settings, MoleculesSe
       msd_(std::move(molecules.msd)),
       scene_(scene),
       in_time_(in_time),
+      beads_(scene),
       population_(scene.settings().molecules.size(), 0.0),
       around_(molecules.around, names_of_molecules(scene), kinds_of_molecules(scene)),
       displacements_(this->settings().name, msd_.window, msd_.fit_from,
                      dt * static_cast<double>(this->settings().every), population_.size()) {
   if (in_time_) scene.particles().carry(column());
   for (const Molecule& m : scene.molecules()) population_[m.kind] += 1.0;
-  for (const auto& m : scene.settings().molecules) tree_.push_back(bond_tree(m));
   const Particles<D>& particles = scene.particles();
   for (std::size_t i = 0; i < particles.position.size(); ++i)
     if (is_solvent(particles, i)) ++solvent_;
@@ -95,18 +77,6 @@ bool MoleculeStatistics<D>::is_solvent(const Particles<D>& particles, std::size_
 }
 
 template <int D>
-std::vector<Vec<D>> MoleculeStatistics<D>::beads_of(
-    const Molecule& m, const Stage<D>& stage, const std::vector<std::int32_t>& index_of) const {
-  const auto bead_at = [&](std::size_t bead) {
-    return stage.position[index(index_of[index(m.first) + bead])];
-  };
-  std::vector<Vec<D>> beads(scene_.settings().molecules[m.kind].shape.size());
-  for (const auto& [from, to] : tree_[m.kind])
-    beads[to] = beads[from] + stage.box.separation(bead_at(to), bead_at(from));
-  return beads;
-}
-
-template <int D>
 void MoleculeStatistics<D>::count_solvent(const Particles<D>& particles, const Stage<D>& stage) {
   const std::vector<std::int32_t> index_of = particles.index_of_id();
   const Share own = particles.owned();
@@ -115,7 +85,7 @@ void MoleculeStatistics<D>::count_solvent(const Particles<D>& particles, const S
     if (is_solvent(particles, i)) solvent.push_back(static_cast<std::int32_t>(i));
   std::vector<Vec<D>> centres;
   for (const Molecule& m : scene_.molecules()) {
-    const std::vector<Vec<D>> beads = beads_of(m, stage, index_of);
+    const std::vector<Vec<D>> beads = beads_.of(m, stage, index_of);
     centres.push_back(stage.position[index(index_of[index(m.first)])]);
     for (const Vec<D>& r : beads) centres.back() += (1.0 / static_cast<double>(beads.size())) * r;
   }
@@ -143,7 +113,7 @@ std::vector<double> MoleculeStatistics<D>::shapes(const Particles<D>& particles,
       sum[0] += share * r;
       sum[1] += share * r * r;
     }
-    const std::vector<Vec<D>> beads = beads_of(m, stage, index_of);
+    const std::vector<Vec<D>> beads = beads_.of(m, stage, index_of);
     const double bead = 1.0 / static_cast<double>(beads.size());
     Vec<D> centre{};
     for (const Vec<D>& r : beads) centre += bead * r;

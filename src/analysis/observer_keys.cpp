@@ -114,6 +114,23 @@ std::string control_with_bonds(const std::string& observer) {
          "dt";
 }
 
+template <int D>
+void refuse_frozen(const ObserverEntry<D>& entry) {
+  if (entry.scene.settings().mass > 0.0)
+    entry.config.fail(
+        "kind", "is of particles without mass, which a load moves at once: set fluid.mass = 0");
+  if (!entry.two_stages)
+    entry.config.fail("kind",
+                      "asks for solves at the step's start, which schemes of two stages give: use "
+                      "the integrator 'trapezoidal' or 'midpoint'");
+}
+
+double read_frozen_tolerance(const Config& config) {
+  const double tolerance = config.positive("tolerance", 0.01);
+  if (tolerance >= 1.0) config.fail("tolerance", "must be less than 1");
+  return tolerance;
+}
+
 void require_two_steps(const Config& config, double window, double dt) {
   if (config.has("window") && window < 2.0 * dt * (1.0 - 1e-9))
     config.fail("window", fmt::format("is {}: it must hold two steps of {} at least", window, dt));
@@ -125,6 +142,7 @@ void require_two_steps(const Config& config, double window, double dt) {
   template bool flows_along<D>(const Scene<D>&, int);                                   \
   template std::vector<int> read_directions<D>(const Config&, const std::vector<int>&); \
   template typename Grid<D>::Counts read_cells<D>(const ObserverEntry<D>&, double);     \
+  template void refuse_frozen<D>(const ObserverEntry<D>&);                              \
   template double read_r_max<D>(const ObserverEntry<D>&);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)

@@ -10,6 +10,8 @@
 #include "odpd/analysis/divergence.h"
 #include "odpd/analysis/drop.h"
 #include "odpd/analysis/heat.h"
+#include "odpd/analysis/high_frequency_viscosity.h"
+#include "odpd/analysis/mobility.h"
 #include "odpd/analysis/modes.h"
 #include "odpd/analysis/molecules.h"
 #include "odpd/analysis/msd.h"
@@ -40,6 +42,10 @@ const std::vector<ObserverKind<D>>& observer_kinds() {
       {.name = "stress", .make = Stress<D>::make},
       {.name = "bodies", .make = Bodies<D>::make},
       {.name = "viscosity", .make = Viscosity<D>::make, .of_motion = true},
+      {.name = "high-frequency-viscosity",
+       .make = HighFrequencyViscosity<D>::make,
+       .of_motion = true},
+      {.name = "mobility", .make = Mobility<D>::make, .of_motion = true},
       {.name = "divergence", .make = Divergence<D>::make, .of_motion = true},
       {.name = "velocities", .make = Velocities<D>::make, .of_motion = true},
       {.name = "wave", .make = WaveAmplitude<D>::make, .of_motion = true},

@@ -185,7 +185,7 @@ TEST(EveryKind, NamesWhatItGivesAndContinues) {
   std::vector<std::string> keys;
   for (const ObserverKind<2>& kind : odpd::observer_kinds<2>())
     if (const std::vector<std::string> others{"modes", "velocities", "wave", "surface-tension",
-                                              "drop"};
+                                              "drop", "high-frequency-viscosity"};
         std::find(others.begin(), others.end(), kind.name) == others.end())
       keys.push_back("kind = \"" + kind.name + "\"\n");
   expect_named_and_continued(everything(), keys);
@@ -201,6 +201,9 @@ TEST(EveryKind, NamesWhatItGivesAndContinues) {
                              {"kind = \"modes\"\nnumbers = [1, 3]\n", modes + "every = 2\n"});
   const std::string bodies = "kind = \"bodies\"\nwindow = 0.6\ncontrol = true\n";
   expect_named_and_continued(at_rest(), {bodies, bodies + "control_every = 3\n"});
+  expect_named_and_continued(
+      at_rest(), {"kind = \"high-frequency-viscosity\"\nevery = 10\nplanes = [\"yx\"]\n",
+                  "kind = \"mobility\"\nevery = 10\nloads = \"random\"\ncollective = true\n"});
   auto forced = at_rest(), decaying = at_rest(1.0);
   forced.force_wave = decaying.start_wave = {.along = 1, .number = 1};
   forced.body_force = decaying.start_velocity = {{1.0, 0.0}};

@@ -10,6 +10,7 @@
 
 #include "odpd/analysis/displacements.h"
 #include "odpd/analysis/fluid_around.h"
+#include "odpd/analysis/molecule_beads.h"
 #include "odpd/analysis/msd.h"
 
 namespace odpd {
@@ -37,9 +38,6 @@ class MoleculeStatistics : public Observer<D> {
  private:
   /// Where the particles stood when the window began, unwrapped.
   std::string column() const { return "observer_" + this->named("origin"); }
-  /// Where the beads of a molecule are, seen from its first.
-  std::vector<Vec<D>> beads_of(const Molecule& m, const Stage<D>& stage,
-                               const std::vector<std::int32_t>& index_of) const;
   std::vector<double> shapes(const Particles<D>& particles, const Stage<D>& stage) const;
   void follow(const Particles<D>& particles);
   void count_solvent(const Particles<D>& particles, const Stage<D>& stage);
@@ -48,10 +46,9 @@ class MoleculeStatistics : public Observer<D> {
   MsdSettings msd_;
   const Scene<D>& scene_;
   bool in_time_;
+  MoleculeBeads<D> beads_;
   std::vector<double> population_;  // molecules of each kind
-  // Of each kind: bonds that reach all beads from the first on, as (bead reached already, next bead).
-  std::vector<std::vector<std::array<std::size_t, 2>>> tree_;
-  std::int64_t solvent_ = 0;  // particles
+  std::int64_t solvent_ = 0;        // particles
   FluidAround<D> around_;
   // A sample, per kind: length, its square, R_g^2, square distance from the sites.
   Displacements displacements_;

@@ -45,6 +45,12 @@ ControlKeys read_control(const Config& config, double window = 0.0, double dt = 
 /// A note for results: what control may miss where a scene has bonds.
 std::string control_with_bonds(const std::string& observer);
 
+/// Refuses runs that cannot ask what the configuration of a step's start answers to a load (analysis/frozen.h).
+template <int D>
+void refuse_frozen(const ObserverEntry<D>& entry);
+/// `tolerance` of such solves, relative.
+double read_frozen_tolerance(const Config& config);
+
 /// Refuses a `window` that is given and does not hold two steps.
 void require_two_steps(const Config& config, double window, double dt);
 

@@ -37,6 +37,9 @@ enum class Stream : std::uint64_t {
   /// (attempt, 2 + trial, molecule, bead).
   molecules = 12,
   body_sizes = 13,  ///< radii of bodies (0, 0, which [[body]], which of its bodies)
+  /// Loads of the observer `mobility`: which bodies or molecules are loaded (step, 0, which, 0), signs of random forces
+  /// (step, 1, which, 0) and torques (step, 2, which, 0).
+  loads = 14,
 };
 
 /// Uniform and normal numbers of one seed and stream.

@@ -1,0 +1,39 @@
+#pragma once
+// High-frequency viscosity: the stress that the configuration at a step's start answers to a flow of rate 1 while it has no time to
+// change, by one solve for each plane (answer_to_flow of analysis/frozen.h):
+//
+//   eta_ab = (1/V) (A - J w) . Z (A - J w),   A = r_b e_a at each edge,   R w = J^T Z A
+//
+// of a flow along a with its gradient along b, what sliding images of that shear would do to the pairs at once: at frequencies at
+// which neither springs nor structure have time to answer, nor the pressure of the fluid (analysis/frozen.h says what that changes in a
+// suspension). In the fluid itself structure and time still raise it to the viscosity (analysis/helfand.h, whose `frozen` is this number;
+// docs/rheology.md).
+#include "odpd/analysis/observer.h"
+
+namespace odpd {
+
+struct FlowPlane {
+  int flow = 0, gradient = 1;
+};
+
+struct HighFrequencySettings {
+  std::vector<FlowPlane> planes;
+  double tolerance = 0.01;  ///< of the solves, relative
+};
+
+template <int D>
+class HighFrequencyViscosity : public Observer<D> {
+ public:
+  HighFrequencyViscosity(ObserverSettings settings, HighFrequencySettings flows,
+                         const Scene<D>& scene);
+  static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
+  double solves() const override;
+  void measure(const Clock& clock, const Particles<D>& particles,
+               const StepRecord<D>& record) override;
+
+ private:
+  HighFrequencySettings flows_;
+  const Scene<D>& scene_;
+};
+
+}  // namespace odpd

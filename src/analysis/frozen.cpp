@@ -1,0 +1,81 @@
+#include "odpd/analysis/frozen.h"
+
+#include "odpd/analysis/force_points.h"
+#include "odpd/core/index.h"
+#include "odpd/operator/edge_sums.h"
+
+namespace odpd {
+
+namespace {
+
+// Of slips at the edges of this rank: s.Z s, and s.F_B where a random force was drawn.
+template <int D, class Slip>
+std::array<double, 2> work_of(const StepRecord<D>& record, const Slip& slip_of) {
+  const PairNetwork<D>& network = record.start.network;
+  std::array<double, 2> sums{};
+  for (std::size_t k = 0; k < index(network.size()); ++k) {
+    if (!network.counts(k)) continue;
+    const Vec<D> slip = slip_of(k);
+    sums[0] -= dot(slip, friction_of<D>(network, k, slip));
+    if (!record.edge_noise.empty()) sums[1] += dot(record.edge_noise[k], slip);
+  }
+  return sums;
+}
+
+}  // namespace
+
+template <int D>
+ForceAnswer<D> answer_to_force(const Particles<D>& particles, const StepRecord<D>& record,
+                               const std::vector<Vec<D>>& force, double zeta_0, double tolerance) {
+  const PairNetwork<D>& network = record.start.network;
+  ForceAnswer<D> answer;
+  answer.velocity = record.respond(force, tolerance);
+  const std::vector<Vec<D>>& w = answer.velocity;
+  const auto [power, noise] = work_of<D>(
+      record, [&](std::size_t k) { return w[index(network.i[k])] - w[index(network.j[k])]; });
+  double along = 0.0, drag = 0.0;
+  const Share own = particles.owned();
+  for (auto i = index(own.first); i < index(own.end(std::ssize(w))); ++i) {
+    along += dot(force[i], w[i]);
+    drag += zeta_0 * dot(w[i], w[i]);
+  }
+  std::array<double, 2> sums{2.0 * along - power - drag, noise};
+  particles.ranks().sum(std::span(sums));
+  answer.mobility = sums[0];
+  answer.noise = sums[1];
+  return answer;
+}
+
+template <int D>
+FlowAnswer answer_to_flow(const Particles<D>& particles, const StepRecord<D>& record,
+                          const Gradient<D>& E, double tolerance) {
+  const PairNetwork<D>& network = record.start.network;
+  const ForcePoints<D> points(particles, record.start);
+  const auto affine = [&](std::size_t k) {
+    const Vec<D> r = points.between(network, k);
+    Vec<D> slip;
+    for (std::size_t c = 0; c < D; ++c) slip.x[c] = dot(E[c], r);
+    return slip;
+  };
+  std::vector<Vec<D>> friction(index(network.size())), load(record.start.position.size());
+  for (std::size_t k = 0; k < friction.size(); ++k)
+    friction[k] = -1.0 * friction_of<D>(network, k, affine(k));
+  add_edge_forces<D>(network, friction, load);
+  const std::vector<Vec<D>> w = record.respond(load, tolerance);
+  std::array<double, 2> sums = work_of<D>(record, [&](std::size_t k) {
+    return affine(k) - w[index(network.i[k])] + w[index(network.j[k])];
+  });
+  particles.ranks().sum(std::span(sums));
+  return {.power = sums[0], .noise = sums[1]};
+}
+
+#define ODPD_INSTANTIATE(D)                                                               \
+  template ForceAnswer<D> answer_to_force<D>(const Particles<D>&, const StepRecord<D>&,   \
+                                             const std::vector<Vec<D>>&, double, double); \
+  template FlowAnswer answer_to_flow<D>(const Particles<D>&, const StepRecord<D>&,        \
+                                        const Gradient<D>&, double);
+ODPD_INSTANTIATE(2)
+ODPD_INSTANTIATE(3)
+#undef ODPD_INSTANTIATE
+
+}  // namespace odpd

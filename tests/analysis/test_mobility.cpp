@@ -1,0 +1,404 @@
+// What frozen configurations answer to loads, against the dense matrix P^T R P and against dashpots in series.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "odpd/analysis/high_frequency_viscosity.h"
+#include "odpd/analysis/mobility.h"
+#include "odpd/analysis/registry.h"
+#include "odpd/dynamics/integrator.h"
+#include "records.h"
+#include "support/dimensions.h"
+#include "support/errors.h"
+#include "support/simplex.h"
+
+namespace {
+
+using odpd::HighFrequencyViscosity;
+using odpd::index;
+using odpd::Mobility;
+using odpd::MobilitySettings;
+using odpd::Scene;
+using odpd::Vec;
+
+/// x with (A + sum n n^T) x = b, by elimination.
+std::vector<double> dense_solution(std::vector<std::vector<double>> A,
+                                   const std::vector<std::vector<double>>& nulls,
+                                   std::vector<double> b) {
+  const std::size_t n = b.size();
+  for (const auto& v : nulls)
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) A[i][j] += v[i] * v[j];
+  for (std::size_t p = 0; p < n; ++p) {
+    std::size_t best = p;
+    for (std::size_t i = p; i < n; ++i)
+      if (std::abs(A[i][p]) > std::abs(A[best][p])) best = i;
+    std::swap(A[p], A[best]);
+    std::swap(b[p], b[best]);
+    for (std::size_t i = p + 1; i < n; ++i) {
+      const double factor = A[i][p] / A[p][p];
+      for (std::size_t j = p; j < n; ++j) A[i][j] -= factor * A[p][j];
+      b[i] -= factor * b[p];
+    }
+  }
+  for (std::size_t p = n; p-- > 0;) {
+    for (std::size_t j = p + 1; j < n; ++j) b[p] -= A[p][j] * b[j];
+    b[p] /= A[p][p];
+  }
+  return b;
+}
+
+template <int D>
+odpd::SceneSettings<D> some_fluid() {
+  odpd::SceneSettings<D> s;
+  s.box.size = support::uniform_vec<D>(D == 2 ? 3.0 : 2.2);
+  s.box.periodic.fill(true);
+  s.count = D == 2 ? 30 : 34;
+  s.model = odpd::make_dpd<D>({.a = 5.0, .gamma = 3.0, .gamma_perp = 1.0, .cutoff = 1.0});
+  return s;
+}
+
+template <int D>
+odpd::BodySettings<D> body_of(const std::vector<Vec<D>>& frame, std::int64_t count) {
+  odpd::BodySettings<D> body;
+  body.shape = frame;
+  body.count = count;
+  body.clearance = 0.05;
+  return body;
+}
+
+/// A scene, one step of it, and its dense matrix.
+template <int D>
+struct OneStep {
+  explicit OneStep(const odpd::SceneSettings<D>& settings)
+      : scene(settings),
+        dynamics(scene.box(), scene.particles(), scene.model(), scene,
+                 odpd::make_solver({.name = "pcg", .tolerance = 1e-6}), {.seed = 3}),
+        integrator(odpd::make_integrator<D>("trapezoidal")),
+        record(integrator->step(dynamics, odpd::Clock{.dt = 0.005})) {
+    const auto n = index(dynamics.dofs().unknowns());
+    for (std::size_t k = 0; k < n; ++k) {
+      std::vector<double> q(n, 0.0);
+      q[k] = 1.0;
+      matrix.push_back(dynamics.friction(record.start, q));
+    }
+    // Momentum of each unknown: with no net one the motion is relative to the mean of all particles.
+    for (std::size_t c = 0; c < D; ++c)
+      nulls.push_back(of_forces([&](std::size_t) {
+        Vec<D> f{};
+        f.x[c] = 1.0;
+        return f;
+      }));
+    if (D == 2)  // the unused component of w
+      for (std::size_t b = 0; b < index(dynamics.dofs().bodies()); ++b) {
+        nulls.emplace_back(n, 0.0);
+        nulls.back()[D * b + 1] = 1.0;
+      }
+  }
+
+  /// P^T f of forces on particles.
+  template <class Force>
+  std::vector<double> of_forces(const Force& force) {
+    std::vector<Vec<D>> f;
+    for (std::size_t i = 0; i < record.start.position.size(); ++i) f.push_back(force(i));
+    std::vector<double> q;
+    dynamics.dofs().gather(record.start.arms, f, q);
+    return q;
+  }
+  /// f . A^+ f of a load on unknowns, its net force spread over all particles.
+  double answer(const std::vector<double>& f) {
+    std::vector<double> load = f;
+    const auto& translations = nulls;
+    const std::size_t bodies = index(dynamics.dofs().bodies());
+    const double n = static_cast<double>(record.start.position.size());
+    for (std::size_t c = 0; c < D; ++c) {
+      double net = 0.0;
+      for (std::size_t k = D * bodies + c; k < load.size(); k += D) net += f[k];
+      for (std::size_t k = 0; k < load.size(); ++k) load[k] -= net / n * translations[c][k];
+    }
+    const std::vector<double> v = dense_solution(matrix, nulls, load);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < f.size(); ++k) sum += f[k] * v[k];
+    return sum;
+  }
+  /// That of a unit force (torque) along direction c on some bodies.
+  double of_bodies(const std::vector<std::size_t>& bodies, std::size_t c, bool turn) {
+    std::vector<double> f(matrix.size(), 0.0);
+    for (const std::size_t b : bodies) f[(turn ? b : dynamics.dofs().body_node(b)) * D + c] = 1.0;
+    return answer(f);
+  }
+  odpd::Results measured(const MobilitySettings& settings, std::int64_t times = 1) {
+    Mobility<D> mobility({.kind = "mobility", .name = "m"}, settings, scene);
+    for (std::int64_t t = 0; t < times; ++t) {
+      record.step = t;
+      mobility.measure(odpd::Clock{}, scene.particles(), record);
+    }
+    return records::results(mobility);
+  }
+
+  Scene<D> scene;
+  odpd::Dynamics<D> dynamics;
+  std::unique_ptr<odpd::Integrator<D>> integrator;
+  odpd::StepRecord<D> record;
+  std::vector<std::vector<double>> matrix, nulls;
+};
+
+template <class T>
+class MobilityTest : public ::testing::Test {};
+TYPED_TEST_SUITE(MobilityTest, support::Dimensions);
+
+// Unit loads on two bodies and, within the spread of what they feel of each other, random ones on both and unit ones on either. A
+// loose tolerance does: its error counts squared.
+TYPED_TEST(MobilityTest, OfBodiesIsThatOfTheDenseMatrix) {
+  constexpr int D = TypeParam::D;
+  constexpr int turns = odpd::rotation_components<D>;
+  auto settings = some_fluid<D>();
+  settings.bodies = {body_of<D>(support::simplex_body<D>().frame, 2)};
+  OneStep<D> step(settings);
+  double translation = 0.0, rotation = 0.0, collective = 0.0;
+  std::array<double, D> component{};
+  for (std::size_t c = 0; c < D; ++c) {
+    for (const std::size_t b : {0, 1}) component[c] += 0.5 * step.of_bodies({b}, c, false);
+    translation += component[c] / D;
+    collective += step.of_bodies({0, 1}, c, false) / (2.0 * D);
+  }
+  for (std::size_t c = 0; c < turns; ++c)
+    for (const std::size_t b : {0, 1}) rotation += step.of_bodies({b}, c, true) / (2.0 * turns);
+  EXPECT_GT(std::abs(collective / translation - 1.0), 0.05);
+  for (const double tolerance : {1e-10, 0.1}) {
+    SCOPED_TRACE(tolerance);
+    const auto results =
+        step.measured({.bodies = {0}, .molecules = {}, .collective = true, .tolerance = tolerance});
+    const double bound = tolerance < 0.01 ? 1e-8 : 0.02;
+    EXPECT_NEAR(records::mean(results, "m.body.translation"), translation, bound * translation);
+    EXPECT_NEAR(records::mean(results, "m.body.translation.y"), component[1], bound * component[1]);
+    EXPECT_NEAR(records::mean(results, "m.body.rotation"), rotation, bound * rotation);
+    EXPECT_NEAR(records::mean(results, "m.body.collective"), collective, bound * collective);
+  }
+  for (const bool random : {false, true}) {
+    SCOPED_TRACE(random);
+    const auto results = step.measured(
+        {.bodies = {0}, .molecules = {}, .sample = 1, .random_loads = random, .tolerance = 1e-4},
+        256);
+    for (const auto& [name, exact] :
+         {std::pair{"m.body.translation", translation}, std::pair{"m.body.rotation", rotation}}) {
+      const double error = records::error(results, name);
+      EXPECT_GT(error, 1e-5 * exact) << name;
+      EXPECT_LT(error, 0.04 * exact) << name;
+      EXPECT_NEAR(records::mean(results, name), exact, 4.0 * error) << name;
+    }
+  }
+}
+
+// A dimer across a corner of the box: forces of half each on its beads, and opposite ones across its line.
+TYPED_TEST(MobilityTest, OfMoleculesIsThatOfTheDenseMatrix) {
+  constexpr int D = TypeParam::D;
+  auto settings = some_fluid<D>();
+  odpd::MoleculeSettings<D> dimer;
+  dimer.name = "dimer";
+  Vec<D> half{};
+  half[0] = half[1] = 0.25;
+  dimer.shape = {half, -1.0 * half};
+  dimer.species = {0, 0};
+  dimer.bonds = {{.i = 0, .j = 1, .p = {.H = 100.0, .r_0 = 0.7}}};
+  dimer.positions = {Vec<D>{}};
+  settings.molecules = {dimer};
+  OneStep<D> step(settings);
+  const auto first = step.scene.molecules()[0].first;
+  const auto index_of = step.scene.particles().index_of_id();
+  const auto one = index(index_of[index(first)]), two = index(index_of[index(first) + 1]);
+  const Vec<D> r =
+      step.scene.box().separation(step.record.start.position[one], step.record.start.position[two]);
+  const auto mean_of = [&](std::size_t directions, const auto& load) {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < directions; ++c)
+      sum += step.answer(step.of_forces([&](std::size_t i) {
+        return i == one ? load(c, 1.0) : i == two ? load(c, -1.0) : Vec<D>{};
+      }));
+    return sum / static_cast<double>(directions);
+  };
+  const double translation = mean_of(D, [](std::size_t c, double) {
+    Vec<D> f{};
+    f.x[c] = 0.5;
+    return f;
+  });
+  // Directions across r, and across the one before.
+  std::vector<Vec<D>> across;
+  for (int c = 0; c + 1 < D; ++c) {
+    Vec<D> n{};
+    n[c + 1] = 1.0;
+    n -= dot(n, r) / dot(r, r) * r;
+    for (const Vec<D>& other : across) n -= dot(n, other) * other;
+    across.push_back(1.0 / norm(n) * n);
+  }
+  const double rotation =
+      mean_of(D - 1, [&](std::size_t c, double sign) { return sign / norm(r) * across[c]; });
+  const auto results = step.measured({.bodies = {}, .molecules = {0}, .tolerance = 1e-10});
+  EXPECT_NEAR(records::mean(results, "m.dimer.translation"), translation, 1e-8 * translation);
+  EXPECT_NEAR(records::mean(results, "m.dimer.rotation"), rotation, 1e-8 * rotation);
+}
+
+// Along the axes of a rod, wherever it points: it has no rotation about its line, and the two across are alike by trace.
+TEST(MobilityOfARod, HasItsOwnAxes) {
+  auto settings = some_fluid<3>();
+  settings.bodies = {body_of<3>({{{-0.5, 0.0, 0.0}}, {{0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}}}, 1)};
+  OneStep<3> step(settings);
+  const Vec<3> line = step.scene.particles().bodies[0].pose.orientation.turn({{1.0, 0.0, 0.0}});
+  ASSERT_LT(std::abs(line[0]), 0.95);
+  MobilitySettings wanted{.bodies = {0}, .molecules = {}, .tolerance = 1e-10};
+  const auto space = step.measured(wanted);
+  wanted.own_axes = true;
+  const auto own = step.measured(wanted);
+  const auto mean = [](const odpd::Results& results, const std::string& name) {
+    return records::mean(results, "m.body." + name);
+  };
+  for (const char* what : {"translation", "rotation"})
+    EXPECT_NEAR(mean(own, what), mean(space, what), 1e-8 * mean(space, what));
+  EXPECT_TRUE(std::isnan(mean(own, "rotation.x")));
+  EXPECT_NEAR(mean(own, "rotation"), 0.5 * (mean(own, "rotation.y") + mean(own, "rotation.z")),
+              1e-12);
+  // e . mu e of its line, from the dense matrix.
+  std::vector<Vec<3>> arms;
+  for (const std::int32_t p : step.dynamics.dofs().constituents(0))
+    arms.push_back(step.record.start.arms[index(p)]);
+  const Vec<3> e = 1.0 / norm(arms[2]) * arms[2];
+  std::vector<double> force(step.matrix.size(), 0.0), spin(force);
+  for (std::size_t c = 0; c < 3; ++c) {
+    force[step.dynamics.dofs().body_node(0) * 3 + c] = e.x[c];
+    spin[c] = e.x[c];
+  }
+  step.nulls.push_back(spin);
+  const double along = step.answer(force);
+  EXPECT_NEAR(mean(own, "translation.x"), along, 1e-8 * along);
+  EXPECT_GT(std::abs(mean(space, "translation.x") - along), 1e-3 * along);
+}
+
+/// Particles on the diagonal of the xy plane, a ring through the corner of the box.
+template <int D>
+odpd::SceneSettings<D> ring() {
+  std::vector<Vec<D>> r;
+  for (const double x : {0.1, 0.5, 1.1, 1.5}) {
+    r.push_back(support::uniform_vec<D>(0.3));
+    r.back()[0] = r.back()[1] = x;
+  }
+  auto s = records::periodic<D>(2.0, r);
+  s.model =
+      odpd::make_dpd<D>({.a = 0.0, .gamma = 2.0, .gamma_perp = 1.0, .s = 1.0, .cutoff = 0.95});
+  return s;
+}
+
+template <int D>
+odpd::Results flown(OneStep<D>& step) {
+  HighFrequencyViscosity<D> eta({.kind = "high-frequency-viscosity", .name = "h"},
+                                {.planes = {{0, 1}, {1, 0}}, .tolerance = 1e-10}, step.scene);
+  eta.measure(odpd::Clock{}, step.scene.particles(), step.record);
+  return records::results(eta);
+}
+
+// The slips along and across the ring, r/2 of each edge in either plane, are those of dashpots in series: the same force in all, so that
+// V eta is the square of their sum, 1/2 of the diagonal 2 sqrt 2, over the sum of 1/zeta. Equal forces are not equal slips: particles
+// that did not give way would dissipate more.
+TYPED_TEST(MobilityTest, HighFrequencyViscosityIsThatOfDashpotsInSeries) {
+  constexpr int D = TypeParam::D;
+  OneStep<D> step(ring<D>());
+  const auto& network = step.record.start.network;
+  ASSERT_EQ(network.size(), 4);
+  double along = 0.0, across = 0.0, stiff = 0.0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    along += 1.0 / network.zeta_par[k];
+    across += 1.0 / network.zeta_perp[k];
+    stiff += 0.25 * network.r[k] * network.r[k] * (network.zeta_par[k] + network.zeta_perp[k]);
+  }
+  const double exact = (2.0 / along + 2.0 / across) / std::pow(2.0, D);
+  EXPECT_GT(stiff / std::pow(2.0, D), 1.05 * exact);
+  const auto results = flown(step);
+  for (const char* name : {"h.eta", "h.xy", "h.yx"})
+    EXPECT_NEAR(records::mean(results, name), exact, 1e-8 * exact) << name;
+}
+
+// Two of them a rigid body, that turns: it opens the ring for slips across, and a part of the slip along falls on its length, where
+// nothing gives way.
+TYPED_TEST(MobilityTest, HighFrequencyViscosityOfARigidPair) {
+  constexpr int D = TypeParam::D;
+  auto s = ring<D>();
+  Vec<D> half{};
+  half[0] = half[1] = 0.2;
+  odpd::BodySettings<D> body = body_of<D>({half, -1.0 * half}, 1);
+  body.positions = {0.5 * (s.start_positions[0] + s.start_positions[1])};
+  s.bodies = {body};
+  s.start_positions.erase(s.start_positions.begin(), s.start_positions.begin() + 2);
+  OneStep<D> step(s);
+  const auto& network = step.record.start.network;
+  ASSERT_EQ(network.size(), 3);
+  double along = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) along += 1.0 / network.zeta_par[k];
+  const double exact = 2.0 / along / std::pow(2.0, D);
+  EXPECT_NEAR(records::mean(flown(step), "h.xy"), exact, 1e-8 * exact);
+}
+
+TEST(FrozenAnswers, RefuseWhatTheyCannotTell) {
+  const auto refused = [](const odpd::SceneSettings<2>& s, const std::string& keys,
+                          std::initializer_list<const char*> parts,
+                          const char* integrator = "trapezoidal") {
+    const Scene<2> scene(s);
+    const odpd::Config config = odpd::Config::from_text("[[observe]]\n" + keys, "case.toml");
+    support::expect_error<odpd::ConfigError>(
+        [&] {
+          odpd::make_observers<2>(config, scene, odpd::Clock{.dt = 0.02},
+                                  odpd::integrator_traits(integrator));
+        },
+        parts);
+  };
+  auto s = some_fluid<2>();
+  const std::string mobility = "kind = \"mobility\"\n",
+                    viscosity = "kind = \"high-frequency-viscosity\"\n";
+  refused(s, mobility, {"case.toml:2", "kind", "[[body]]", "[[molecule]]"});
+  s.bodies = {body_of<2>(support::simplex_body<2>().frame, 1)};
+  auto heavy = s, dragged = s, held = s;
+  heavy.mass = 1.0;
+  dragged.zeta_0 = 0.1;
+  held.bodies[0].motion = odpd::BodyMotion::fixed;
+  refused(heavy, mobility, {"kind", "fluid.mass = 0"});
+  refused(heavy, viscosity, {"kind", "fluid.mass = 0"});
+  refused(s, mobility, {"kind", "'trapezoidal' or 'midpoint'"}, "euler");
+  refused(s, viscosity, {"kind", "'trapezoidal' or 'midpoint'"}, "euler");
+  refused(held, mobility, {"kind", "free [[body]]"});
+  refused(held, viscosity, {"kind", "held"});
+  refused(dragged, viscosity, {"kind", "zeta_0"});
+  refused(s, mobility + "of = [\"ball\"]\n", {"case.toml:3", "of", "'ball'", "body"});
+  refused(s, mobility + "of = []\n", {"of", "at least one"});
+  refused(s, mobility + "loads = \"random\"\nsample = 2\n", {"case.toml:4", "sample", "unit"});
+  refused(s, mobility + "tolerance = 1.5\n", {"tolerance", "less than 1"});
+  refused(s, viscosity + "planes = [\"xx\"]\n", {"case.toml:3", "planes", "'xx'", "xy, yx"});
+  refused(s, viscosity + "planes = [\"xy\", \"xy\"]\n", {"planes", "twice"});
+  refused(s, viscosity + "planes = []\n", {"planes", "at least one"});
+  odpd::MoleculeSettings<2> bead;
+  bead.name = "body";
+  bead.shape = {Vec<2>{}};
+  bead.species = {0};
+  s.molecules = {bead};
+  refused(s, mobility, {"of", "'body'", "name of its own"});
+  s.molecules[0].name = "bead";
+  refused(s, mobility + "axes = \"body\"\n", {"axes", "molecule", "of"});
+}
+
+// A solve for each load; a sample of the bodies is no more than there are.
+TEST(FrozenAnswers, TellTheirSolves) {
+  auto s = some_fluid<2>();
+  s.bodies = {body_of<2>(support::simplex_body<2>().frame, 2)};
+  const Scene<2> scene(s);
+  const auto solves = [&](const std::string& keys) {
+    const odpd::Config config = odpd::Config::from_text("[[observe]]\n" + keys, "case.toml");
+    return odpd::make_observers<2>(config, scene, odpd::Clock{.dt = 0.02},
+                                   odpd::integrator_traits("trapezoidal"))
+        .front()
+        ->solves();
+  };
+  const std::string mobility = "kind = \"mobility\"\nevery = 10\n";
+  EXPECT_DOUBLE_EQ(solves(mobility), 0.6);
+  EXPECT_DOUBLE_EQ(solves(mobility + "sample = 1\ncollective = true\n"), 0.5);
+  EXPECT_DOUBLE_EQ(solves(mobility + "loads = \"random\"\n"), 0.2);
+  EXPECT_DOUBLE_EQ(solves("kind = \"high-frequency-viscosity\"\nevery = 10\n"), 0.1);
+}
+
+}  // namespace
