@@ -1,6 +1,7 @@
 #include "odpd/core/rotation.h"
 
 #include <algorithm>
+#include <numbers>
 
 namespace odpd {
 
@@ -53,6 +54,32 @@ std::array<double, 4> leading_vector(Matrix4 m) {
 }
 
 }  // namespace
+
+Rotation<2> rotation_onto(const Vec<2>& from, const Vec<2>& to) {
+  Rotation<2> q;
+  q.advance({{std::atan2(torque(from, to)[0], dot(from, to)), 0.0}});
+  return q;
+}
+
+Rotation<3> rotation_onto(const Vec<3>& from, const Vec<3>& to) {
+  Rotation<3> q;
+  const auto advance = [&q](const Vec<3>& axis, double angle) {
+    if (angle > 0.0) q.advance((angle / norm(axis)) * axis);
+  };
+  Vec<3> start = from, axis = torque(from, to);
+  // Of opposite directions the product is rounding alone: half a turn about an axis across, then what is left.
+  if (dot(from, to) < 0.0 && norm(axis) < 1e-6 * norm(from) * norm(to)) {
+    const auto least = std::min_element(
+        from.x.begin(), from.x.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    Vec<3> unit{};
+    unit.x[static_cast<std::size_t>(least - from.x.begin())] = 1.0;
+    advance(torque(from, unit), std::numbers::pi);
+    start = -1.0 * from;
+    axis = torque(start, to);
+  }
+  advance(axis, std::atan2(norm(axis), dot(start, to)));
+  return q;
+}
 
 Rotation<2> best_rotation(std::span<const Vec<2>> from, std::span<const Vec<2>> to) {
   double c = 0.0, s = 0.0;

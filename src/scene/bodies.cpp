@@ -89,13 +89,16 @@ template <int D>
 ConfigError no_room(const std::vector<BodySettings<D>>& settings, double space,
                     const std::optional<RandomPlaces<D>>& found) {
   constexpr const char* remedy =
-      "lower count, fraction or clearance, give positions, or use a larger box";
+      "lower count, fraction or clearance, give positions (of long bodies with `along`, as their "
+      "balls are mostly empty), or use a larger box";
   std::vector<std::string> names;
   std::int64_t bodies = 0;
+  double across = 0.0;
   for (const BodySettings<D>& s : settings) {
     if (!is_placed_at_random(s)) continue;
     names.push_back(fmt::format("'{}'", s.name));
     bodies += s.count;
+    across = std::max(across, 2.0 * (s.radius() + 0.5 * s.clearance));
     if (found && found->scale == 0.0 && index(bodies) > found->centres.size())
       return ConfigError(fmt::format(
           "[[body]] '{}': no room was found even for one body alone, which with half its clearance "
@@ -112,8 +115,9 @@ ConfigError no_room(const std::vector<BodySettings<D>>& settings, double space,
   }
   return ConfigError(fmt::format(
       "[[body]] {}: no random places were found for all {} bodies. With half its clearance around "
-      "each they would fill {:.3g} of the {}, {}: {}",
-      fmt::join(names, ", "), bodies, fraction, D > 2 ? "volume" : "area", reached, remedy));
+      "each, as {} of {}{:.6g} across, they would fill {:.3g} of the {}, {}: {}",
+      fmt::join(names, ", "), bodies, D > 2 ? "balls" : "disks", names.size() > 1 ? "up to " : "",
+      across, fraction, D > 2 ? "volume" : "area", reached, remedy));
 }
 
 template <int D>
@@ -156,6 +160,7 @@ std::vector<std::size_t> place_bodies(const std::vector<BodySettings<D>>& settin
       pose.centre = low;
       if (!is_placed_at_random(settings[k])) {
         pose.centre = settings[k].positions[n];
+        pose.orientation = settings[k].orientation(n);
         box.wrap(pose.centre);
       } else if (at_random) {
         pose.centre = found.centres[number];

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "odpd/core/error.h"
 #include "odpd/core/index.h"
@@ -323,6 +324,39 @@ void read_places(const Config& entry, const SceneSettings<D>& scene, const Shape
                                p[c], box.size[c]));
 }
 
+// The direction in its frame that `along` turns a shape by: the axis of a figure of revolution, of points on a line the way from the
+// first to the last one. None of other shapes.
+template <int D>
+std::optional<Vec<D>> axis_of(const ShapeKeys& keys, const std::vector<Vec<D>>& shape) {
+  Vec<D> x{};
+  x[0] = 1.0;
+  if (keys.name == "rod" || keys.name == "ellipsoid" || keys.name == "ellipse") return x;
+  constexpr double thin = 1e-6;  // as `rotations` has it
+  const Vec<D> along = shape.back() - shape.front();
+  double beside = 0.0;
+  for (const Vec<D>& p : shape)
+    beside = std::max(beside, norm(dot(along, along) * p - dot(along, p) * along));
+  if (keys.name != "points" || !(beside < thin * std::pow(norm(along), 3))) return {};
+  return along;
+}
+
+// Where bodies at `positions` point.
+template <int D>
+void read_orientations(const Config& entry, const ShapeKeys& keys, BodySettings<D>& body) {
+  for (const Config& place : entry.tables("positions")) {
+    body.orientations.emplace_back();
+    if (!place.has("along")) continue;
+    const Vec<D> along = body_vector<D>(place, "along", place.numbers("along"));
+    const std::optional<Vec<D>> axis = axis_of<D>(keys, body.shape);
+    if (!axis)
+      place.fail("along", fmt::format("shape = \"{}\" has no axis to point anywhere: rods, {} and "
+                                      "points on a line have one; leave `along` out",
+                                      keys.name, D > 2 ? "ellipsoids" : "ellipses"));
+    if (norm(along) == 0.0) place.fail("along", "a direction is needed, not the zero vector");
+    body.orientations.back() = rotation_onto(*axis, along);
+  }
+}
+
 // Half of an edge or longer, the nearest image of a site could be another one than its body's.
 template <int D>
 void check_size(const Config& entry, const Box<D>& box, const BodySettings<D>& body) {
@@ -372,6 +406,7 @@ BodySettings<D> read_body(const Config& entry, const SceneSettings<D>& scene) {
     for (std::size_t k = 1; k < index(body.bodies()); ++k)
       body.shapes.push_back(centred_sites<D>(entry, keys, radii.of(k)));
   }
+  read_orientations(entry, keys, body);
   const std::string motion = entry.choice("motion", {"free", "fixed", "given"}, "free");
   body.motion = motion == "free"    ? BodyMotion::free
                 : motion == "fixed" ? BodyMotion::fixed

@@ -194,9 +194,9 @@ void check_body_positions(const Config& config, const SceneSettings<D>& scene) {
     double spacing = 0.0;
     for (std::size_t n = 0; n < s.positions.size(); ++n) {
       if (n == 0 || !s.shapes.empty()) spacing = spacing_of<D>(s.shape_of(n));
-      const PlacedBody<D> body{kind,           static_cast<std::int64_t>(n) + 1,
-                               s.positions[n], s.shape_of(n),
-                               s.radius(n),    spacing};
+      PlacedBody<D> body{kind,   static_cast<std::int64_t>(n) + 1, s.positions[n], {}, s.radius(n),
+                         spacing};
+      for (const Vec<D>& point : s.shape_of(n)) body.arms.push_back(s.orientation(n).turn(point));
       check_ends(entries[kind], scene, body);
       check_walls(entries[kind], scene, body);
       if (const PlacedBody<D>* other = placed.first_in(body, 1.0))

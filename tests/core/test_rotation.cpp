@@ -76,4 +76,24 @@ TYPED_TEST(BestRotation, OfNothingIsARotation) {
   EXPECT_NEAR(norm(odpd::best_rotation(zero, zero).turn(one)), norm(one), 1e-15);
 }
 
+// Onto the direction, by the angle between the two and no farther: a vector across both stays.
+TYPED_TEST(BestRotation, OntoADirectionIsTheShortest) {
+  constexpr int D = TypeParam::D;
+  auto from = support::random_vectors<D>(12, 5), to = support::random_vectors<D>(12, 6);
+  to[0] = 3.0 * from[0];
+  to[1] = -0.2 * from[1];
+  from[2] = to[2] = Vec<D>{};
+  from[2][0] = 1.0;
+  to[2][0] = -1.0;
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    const Rotation<D> q = odpd::rotation_onto(from[k], to[k]);
+    const Vec<D> turned = q.turn(from[k]);
+    EXPECT_LT(norm((1.0 / norm(turned)) * turned - (1.0 / norm(to[k])) * to[k]), 1e-12) << k;
+    EXPECT_NEAR(norm(turned), norm(from[k]), 1e-12);
+    if (D < 3 || k < 3) continue;
+    const Vec<D> across = odpd::torque(from[k], to[k]);
+    EXPECT_LT(norm(q.turn(across) - across), 1e-12) << k;
+  }
+}
+
 }  // namespace

@@ -289,8 +289,8 @@ TEST(RandomPlaces, MessagesSayWhatWasReached) {
         [&] { odpd::Scene<2>(cases::settings<2>(box_with(length, bodies))); }, words);
   };
   refuse(std::sqrt(200.0 * std::numbers::pi / 0.95), random_disks("a", 150) + random_disks("b", 50),
-         {"[[body]] 'a', 'b'", "all 200 bodies", "0.95 of the area", "0.8", "was reached",
-          "about 17", "lower count, fraction or clearance"});
+         {"[[body]] 'a', 'b'", "all 200 bodies", "disks of up to 2 across", "0.95 of the area",
+          "0.8", "was reached", "about 17", "lower count, fraction or clearance"});
   refuse(10.0, random_disks("a", 1000000000),
          {"[[body]] 'a'", "1000000000 bodies", "3.14e+07 of the area, more than there is"});
   refuse(10.0,

@@ -1,7 +1,10 @@
 // Bodies on a line in 3D: which shapes are taken, how they point and move at the start.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <initializer_list>
 #include <string>
 
 #include "cases.h"
@@ -91,6 +94,93 @@ TEST(Rods, StartAtRandomWithFiveFreedoms) {
   EXPECT_NEAR(linear / 2000.0, 3.0 * kT, 0.09 * 3.0 * kT);
   EXPECT_NEAR(angular / 2000.0, 2.0 * kT, 0.11 * 2.0 * kT);
   EXPECT_NEAR(all, linear + angular, 1e-12 * all);  // rigid
+}
+
+// --- `along`, at positions ---
+
+// A rod, an ellipsoid and a line of points stand along what is asked for, in their poses: their frames stay along x.
+TEST(Rods, PointAlong) {
+  const Vec<3> along{{1.0, -2.0, 2.0}};
+  const std::string places =
+      "positions = [{ at = [3.0, 3.0, 3.0] }, { at = [9.0, 9.0, 9.0], along = [1.0, -2.0, 2.0] "
+      "}]\n";
+  for (const std::string shape :
+       {"shape = \"rod\"\nlength = 4.0\nspacing = 0.5\n",
+        "shape = \"rod\"\nlength = 4.0\nradius = 0.5\nspacing = 0.5\n",
+        "shape = \"ellipsoid\"\nradius = 1.0\naspect = 2.0\nspacing = 0.5\n",
+        "shape = \"points\"\npoints = [{ at = [0.0, 0.0, 0.0] }, { at = [0.0, 0.0, 2.0] }]\n"}) {
+    const auto s = cases::settings<3>(cases::body_in(12.0, shape + places));
+    const odpd::Scene<3> scene(s);
+    const auto& bodies = scene.particles().bodies;
+    ASSERT_EQ(bodies.size(), 2U);
+    const bool points = shape.find("points") != std::string::npos;
+    for (std::size_t b = 0; b < 2; ++b) {
+      const Vec<3> axis = b == 0 ? (points ? Vec<3>{{0.0, 0.0, 1.0}} : Vec<3>{{1.0, 0.0, 0.0}})
+                                 : (1.0 / 3.0) * along;
+      EXPECT_EQ(bodies[b].frame, s.bodies[0].shape);
+      // Extents along the axis and across, of its particles in the box.
+      double out = 0.0, beside = 0.0, frame_out = 0.0, frame_beside = 0.0, sum = 0.0;
+      for (std::size_t k = 0; k < bodies[b].members.size(); ++k) {
+        const auto id = odpd::index(bodies[b].members[k]);
+        const Vec<3> arm = s.box.separation(scene.particles().position[id], bodies[b].pose.centre);
+        out = std::max(out, dot(arm, axis));
+        beside = std::max(beside, norm(odpd::torque(arm, axis)));
+        const Vec<3>& p = bodies[b].frame[k];
+        const double x = points ? p[2] : p[0];
+        frame_out = std::max(frame_out, x);
+        frame_beside = std::max(frame_beside, std::sqrt(std::max(0.0, dot(p, p) - x * x)));
+        sum += x * dot(arm, axis);
+      }
+      EXPECT_NEAR(out, frame_out, 1e-9) << shape;
+      EXPECT_NEAR(beside, frame_beside, 1e-6) << shape;
+      EXPECT_GT(sum, 0.0);  // and not the other way round
+    }
+  }
+}
+
+// Two long rods side by side, and end to end: whether they are in each other goes by how they point.
+TEST(Rods, PlacesGoByWhereTheyPoint) {
+  const auto rods = [](const std::string& second) {
+    return cases::body_in(14.0,
+                          "shape = \"rod\"\nlength = 4.0\nradius = 0.5\nspacing = 0.5\npositions = "
+                          "[{ at = [3.0, 3.0, 3.0], along = [0.0, 1.0, 0.0] }, " +
+                              second + "]\n");
+  };
+  EXPECT_NO_THROW(cases::settings<3>(rods("{ at = [4.6, 3.0, 3.0], along = [0.0, 1.0, 0.0] }")));
+  for (const char* second :
+       {"{ at = [4.6, 3.0, 3.0] }", "{ at = [4.6, 3.0, 3.0], along = [1.0, 0.0, 0.0] }"})
+    support::expect_error<ConfigError>([&] { cases::settings<3>(rods(second)); },
+                                       {"lie in each other", "body 2"});
+  // In a channel: across the wall, not along it.
+  const auto channel = [](const std::string& along) {
+    return cases::channel +
+           ("[[body]]\nshape = \"rod\"\nlength = 2.0\nspacing = 0.3\npositions = [{ "
+            "at = [3.0, 1.5], along = " +
+            along + " }]\n");
+  };
+  EXPECT_NO_THROW(cases::settings<2>(channel("[-1.0, 0.0]")));
+  support::expect_error<ConfigError>([&] { cases::settings<2>(channel("[0.0, 2.0]")); },
+                                     {"in the wall at y-", "0.5 behind", "y = 2 or more"});
+}
+
+TEST(Rods, WhatHasNoAxisPointsNowhere) {
+  const auto refuse = [](const std::string& shape, const std::string& along,
+                         std::initializer_list<const char*> words) {
+    support::expect_error<ConfigError>(
+        [&] {
+          cases::settings<3>(cases::body_in(
+              12.0, shape + "positions = [{ at = [3.0, 3.0, 3.0], along = " + along + " }]\n"));
+        },
+        words);
+  };
+  const std::string rod = "shape = \"rod\"\nlength = 4.0\nspacing = 0.5\n", x = "[1.0, 0.0, 0.0]";
+  refuse(rod, "[0.0, 0.0, 0.0]", {"case.toml:", "body.0.positions.0.along", "zero vector"});
+  refuse(rod, "[1.0, 0.0]", {"body.0.positions.0.along", "3 components"});
+  for (const std::string shape :
+       {"shape = \"sphere\"\nradius = 1.0\n", "shape = \"cube\"\nside = 1.0\n",
+        "shape = \"points\"\npoints = [{ at = [0.0, 0.0, 0.0] }, { at = [0.0, 0.0, 2.0] }, { at = "
+        "[0.0, 1.0, 0.0] }]\n"})
+    refuse(shape, x, {"body.0.positions.0.along", "no axis", "leave `along` out"});
 }
 
 }  // namespace

@@ -81,6 +81,11 @@ class Rotation<3> {
   std::array<double, numbers> q_{1.0, 0.0, 0.0, 0.0};
 };
 
+/// The shortest rotation that turns the direction of `from` into that of `to`, neither of them 0; opposite ones: half a turn, in 3D
+/// about some axis across them.
+Rotation<2> rotation_onto(const Vec<2>& from, const Vec<2>& to);
+Rotation<3> rotation_onto(const Vec<3>& from, const Vec<3>& to);
+
 /// The rotation Q with the smallest sum_k |to_k - Q from_k|^2; at it sum_k torque(Q from_k, to_k) = 0. (3D: the quaternion of
 /// Horn 1987, J. Opt. Soc. Am. A 4, 629.) A function of its arguments alone; where several are as good, one of them.
 Rotation<2> best_rotation(std::span<const Vec<2>> from, std::span<const Vec<2>> to);

@@ -26,15 +26,21 @@ struct BodySettings {
   std::int32_t species = 0;
   std::int64_t count = 1;         ///< at random positions, where there are no `positions`
   std::vector<Vec<D>> positions;  ///< of the centres (length)
-  double clearance = 1.0;         ///< free space around a body placed at random (length)
-  RigidMotion<D> velocity;        ///< for BodyMotion::given
-  RigidLoad<D> load;              ///< force and torque on each, for BodyMotion::free
+  std::vector<Rotation<D>>
+      orientations;         ///< of each at `positions`; without any, `shape` is not turned
+  double clearance = 1.0;   ///< free space around a body placed at random (length)
+  RigidMotion<D> velocity;  ///< for BodyMotion::given
+  RigidLoad<D> load;        ///< force and torque on each, for BodyMotion::free
 
   std::int64_t bodies() const {
     return positions.empty() ? count : static_cast<std::int64_t>(positions.size());
   }
   const std::vector<Vec<D>>& shape_of(std::size_t body) const {
     return shapes.empty() ? shape : shapes[body];
+  }
+  /// Of a body at `positions`.
+  Rotation<D> orientation(std::size_t body) const {
+    return orientations.empty() ? Rotation<D>{} : orientations[body];
   }
   /// Constituents of all bodies.
   std::int64_t particles() const;
