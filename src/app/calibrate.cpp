@@ -92,7 +92,7 @@ CalibrationRecord read_record(const CalibrateOptions& options, const Config& con
   CalibrationRecord record;
   MeasuredFluid& m = record.fluid;
   m.model = dpd != nullptr ? calibrated(fluid, *dpd, D, density) : calibrated(fluid, *sdpd);
-  record.relative_error = options.relative_error;
+  if (options.relative_error > 0.0) record.relative_error = options.relative_error;
   const double asked = dpd != nullptr ? dpd->asked.eta.value_or(0.0) : m.model->friction();
   record.eta = options.eta > 0.0 ? options.eta : asked;
   if (options.measure_only) {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "odpd/app/fluid_report.h"
 #include "odpd/app/memory.h"
 #include "odpd/app/report.h"
+#include "odpd/app/suspension_report.h"
 #include "odpd/core/parallel.h"
 
 namespace odpd {
@@ -111,7 +111,9 @@ double peak_bytes(const Simulation<D>& simulation, const Stage<D>& stage) {
 
 template <int D>
 std::string dry_run_text(Simulation<D>& simulation) {
-  const std::string fluid = "\n" + fluid_text(simulation.scene(), Results{});
+  std::string fluid = "\n" + fluid_text(simulation.scene(), Results{});
+  if (const std::string text = suspension_text(simulation.scene(), Results{}); !text.empty())
+    fluid += "\n" + text;
   if (simulation.integrator().solves() == 0)
     return trial_text(simulation) + modelled(simulation) + fluid;
   const Clock clock = simulation.clock();

@@ -53,10 +53,15 @@ std::vector<double> fractions(const Scene<D>& scene) {
 }
 
 template <int D>
-KineticTheory kinetic_theory_of(const Scene<D>& scene) {
+KineticTheory kinetic_theory_at(const Scene<D>& scene, double density) {
   const double mass = scene.settings().mass;
-  return kinetic_theory<D>(scene.pair_moments(), fractions(scene), density_of(scene), mass,
+  return kinetic_theory<D>(scene.pair_moments(), fractions(scene), density, mass,
                            scene.model().reference_state(mass));
+}
+
+template <int D>
+KineticTheory kinetic_theory_of(const Scene<D>& scene) {
+  return kinetic_theory_at(scene, density_of(scene));
 }
 
 Named asked_values(const PhysicalInputs& in) {
@@ -223,6 +228,19 @@ const Scalar* measured_viscosity(const Results& results) {
 }
 
 template <int D>
+KnownViscosity known_viscosity(const Scene<D>& scene, double density) {
+  const PairModel<D>& model = *scene.settings().model;
+  if (const DpdFluid* dpd = dpd_fluid(model); dpd != nullptr && dpd->calibration)
+    return {dpd->calibration->eta, "calibration"};
+  if (const SdpdModel<D>* sdpd = sdpd_fluid(model)) {
+    const double asked = sdpd->friction().eta(D);
+    if (const auto e = expectation(model)) return {e->ratio * asked, "expected"};
+    return {asked, "asked for"};
+  }
+  return {kinetic_theory_at(scene, density).eta(), "kinetic theory"};
+}
+
+template <int D>
 std::string fluid_text(const Scene<D>& scene, const Results& results) {
   const PairModel<D>& model = *scene.settings().model;
   const KineticTheory k = kinetic_theory_of(scene);
@@ -286,6 +304,8 @@ JsonObject fluid_json(const Scene<D>& scene, const Results& results) {
                                             .set("stderr", measured->standard_error));
 }
 
+template KnownViscosity known_viscosity<2>(const Scene<2>&, double);
+template KnownViscosity known_viscosity<3>(const Scene<3>&, double);
 template std::string fluid_text<2>(const Scene<2>&, const Results&);
 template std::string fluid_text<3>(const Scene<3>&, const Results&);
 template JsonObject fluid_json<2>(const Scene<2>&, const Results&);

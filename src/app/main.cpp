@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "odpd/app/calibrate.h"
+#include "odpd/app/calibrate_radius.h"
 #include "odpd/app/compare.h"
 #include "odpd/app/info.h"
 #include "odpd/app/interrupt.h"
@@ -124,9 +125,31 @@ CLI::App* add_study(CLI::App& app, odpd::StudyOptions& study, bool& quiet) {
   return command;
 }
 
-CLI::App* add_calibrate(CLI::App& app, odpd::CalibrateOptions& calibrate, bool& quiet) {
+struct CalibrateCommand {
+  odpd::CalibrateOptions viscosity;
+  CLI::Option* radius = nullptr;  // given: of a body, in place of a viscosity
+  std::string body;
+  std::vector<double> edges;
+
+  int run() const {
+    if (radius->count() == 0) return odpd::calibrate(viscosity);
+    return odpd::calibrate_radius({.case_path = viscosity.case_path,
+                                   .out = viscosity.out,
+                                   .overrides = viscosity.overrides,
+                                   .body = body,
+                                   .edges = edges,
+                                   .relative_error = viscosity.relative_error,
+                                   .limit_seconds = viscosity.limit_seconds,
+                                   .threads = viscosity.threads});
+  }
+};
+
+CLI::App* add_calibrate(CLI::App& app, CalibrateCommand& options, bool& quiet) {
   CLI::App* command = app.add_subcommand(
-      "calibrate", "measure viscosities of a case's fluid and find the friction that gives one");
+      "calibrate",
+      "measure viscosities of a case's fluid and find the friction that gives one; or the "
+      "hydrodynamic radius of a body");
+  odpd::CalibrateOptions& calibrate = options.viscosity;
   add_case(*command, calibrate.case_path, calibrate.overrides, quiet);
   const CLI::Validator positive = CLI::Range(1e-300, 1e300);
   CLI::Option* eta =
@@ -134,24 +157,37 @@ CLI::App* add_calibrate(CLI::App& app, odpd::CalibrateOptions& calibrate, bool& 
           ->check(positive);
   command
       ->add_option("--relative-error", calibrate.relative_error,
-                   "standard error of the viscosity, over it")
-      ->check(CLI::Range(1e-4, 0.2))
-      ->capture_default_str();
+                   "standard error of the result, over it [0.02 of a viscosity, 0.01 of a radius]")
+      ->check(CLI::Range(1e-4, 0.2));
+  CLI::Option* rate = command
+                          ->add_option("--shear-rate", calibrate.shear_rate,
+                                       "of the measurements [9 kT/(gamma r_c^2), less with mass]")
+                          ->check(positive);
+  CLI::Option* particles =
+      command
+          ->add_option("--particles", calibrate.particles,
+                       "in the measuring scene [a cube with an edge of 8 (2D), 6 (3D) cutoffs]")
+          ->check(CLI::Range(std::int64_t{1}, std::int64_t{100000000}));
+  CLI::Option* only = command
+                          ->add_flag("--measure-only", calibrate.measure_only,
+                                     "one measurement, at the friction of the case")
+                          ->excludes(eta);
+  options.radius = command
+                       ->add_option("--radius", options.body,
+                                    "measure how large the free [[body]] of this name is to a flow "
+                                    "and to the fluid's particles [the only one]")
+                       ->expected(0, 1);
+  for (CLI::Option* other : {eta, rate, particles, only}) options.radius->excludes(other);
   command
-      ->add_option("--shear-rate", calibrate.shear_rate,
-                   "of the measurements [9 kT/(gamma r_c^2), less with mass]")
-      ->check(positive);
-  command
-      ->add_option("--particles", calibrate.particles,
-                   "in the measuring scene [a cube with an edge of 8 (2D), 6 (3D) cutoffs]")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{100000000}));
-  command
-      ->add_flag("--measure-only", calibrate.measure_only,
-                 "one measurement, at the friction of the case")
-      ->excludes(eta);
+      ->add_option("--boxes", options.edges,
+                   "with --radius: edges of its periodic boxes, separated by commas [three]")
+      ->delimiter(',')
+      ->check(positive)
+      ->needs(options.radius);
   command->add_option(
       "--out", calibrate.out,
-      "output directory [runs/<case>-calibrate]; measurements of the same that are there count");
+      "output directory [runs/<case>-calibrate, -radius]; viscosities of the same that are there "
+      "count");
   command->add_option("--threads", calibrate.threads, "threads; never changes results")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
@@ -177,7 +213,7 @@ int command_line(int argc, char** argv) {
   const CLI::App* compare_command = add_compare(app, compare, stopping, quiet);
   odpd::StudyOptions study;
   const CLI::App* study_command = add_study(app, study, quiet);
-  odpd::CalibrateOptions calibrate;
+  CalibrateCommand calibrate;
   const CLI::App* calibrate_command = add_calibrate(app, calibrate, quiet);
   CLI::App* info_command =
       app.add_subcommand("info", "version, build options, backends and machine");
@@ -192,7 +228,7 @@ int command_line(int argc, char** argv) {
   odpd::let_large_writes_fail();
   if (run_command->parsed()) return odpd::run_case(run);
   if (study_command->parsed()) return odpd::run_study(study);
-  if (calibrate_command->parsed()) return odpd::calibrate(calibrate);
+  if (calibrate_command->parsed()) return calibrate.run();
   compare.increment_rule = stopping == "increment";
   if (compare_command->parsed()) return odpd::compare_solvers(compare);
   if (info_command->parsed()) std::fputs(odpd::info_text().c_str(), stdout);

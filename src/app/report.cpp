@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "odpd/app/fluid_report.h"
+#include "odpd/app/suspension_report.h"
 #include "odpd/core/parallel.h"
 #include "odpd/io/json.h"
 #include "odpd/version.h"
@@ -200,6 +200,8 @@ std::string summary_json(const Simulation<D>& simulation, const Results& results
   json.set("phase_seconds", phases_json(simulation.dynamics().phases()));
   json.set("solver", solver_json(simulation));
   json.set("fluid", fluid_json(simulation.scene(), results));
+  if (const auto suspension = suspension_json(simulation.scene(), results))
+    json.set("suspension", *suspension);
   json.set("observables", observables).set("checks", checks_json(checks));
   json.set("alarm_crossings", simulation.alarm_crossings());
   std::vector<JsonObject> notes;
@@ -230,6 +232,8 @@ std::string report_text(const Simulation<D>& simulation, const Results& results,
   out += method_text(simulation);
   out += target_text(simulation, results);
   out += "\n" + fluid_text(simulation.scene(), results);
+  if (const std::string text = suspension_text(simulation.scene(), results); !text.empty())
+    out += "\n" + text;
   out += "\nMeasured (standard error by block averaging)\n";
   for (const Scalar& scalar : results.scalars)
     out +=

@@ -267,18 +267,35 @@ class Radii {
   std::size_t kind_;
 };
 
+// Of a body, where its fraction is that of such balls; else 0.
+template <int D>
+double hydrodynamic_ball(const Config& entry, const Radii& radii) {
+  if (entry.choice("fraction_of", {"sites", "hydrodynamic"}, "sites") == "sites") return 0.0;
+  if (!entry.has("hydrodynamic_radius"))
+    entry.fail("fraction_of",
+               "\"hydrodynamic\" needs hydrodynamic_radius, which odpd calibrate --radius finds");
+  if (radii.differ())
+    entry.fail("fraction_of",
+               "\"hydrodynamic\" is of bodies of one size: give each size its own [[body]]");
+  return unit_ball_volume<D> * std::pow(entry.positive("hydrodynamic_radius"), D);
+}
+
 // As many bodies as come nearest to a fraction of the space.
 template <int D>
 std::int64_t count_of_fraction(const Config& entry, const ShapeKeys& keys, const Radii& radii,
                                double space) {
   const double fraction = entry.positive("fraction"), wanted = fraction * space;
+  const double ball = hydrodynamic_ball<D>(entry, radii);
+  const auto volume_of_body = [&](std::size_t k) {
+    return ball > 0.0 ? ball : volume_inside<D>(entry, keys, radii.of(k));
+  };
   if (!radii.list().empty())
     entry.fail("fraction", "a list of radii says how many bodies there are: leave fraction out");
   if (fraction >= 1.0)
     entry.fail("fraction",
                fmt::format("{} cannot be reached: it is the bodies' share of the {}, below 1",
                            fraction, D > 2 ? "volume" : "area"));
-  const double first = volume_inside<D>(entry, keys, radii.of(0));
+  const double first = volume_of_body(0);
   if (wanted < 0.5 * first)
     entry.fail("fraction",
                fmt::format("{} cannot be reached: a single body is {:.4g} of the {} between the "
@@ -290,7 +307,7 @@ std::int64_t count_of_fraction(const Config& entry, const ShapeKeys& keys, const
   if (!radii.differ()) return std::llround(wanted / first);
   std::int64_t count = 0;
   for (double volume = 0.0;; ++count) {
-    const double next = volume_inside<D>(entry, keys, radii.of(index(count)));
+    const double next = volume_of_body(index(count));
     if (volume + 0.5 * next > wanted) return count;
     volume += next;
   }
@@ -426,6 +443,7 @@ BodySettings<D> read_body(const Config& entry, const SceneSettings<D>& scene) {
   }
   if (body.motion != BodyMotion::fixed) check_turns(entry, box, body);
   check_size(entry, box, body);
+  read_body_sizes(entry, scene, body);
   return body;
 }
 

@@ -11,11 +11,11 @@ struct CalibrateOptions {
   std::filesystem::path case_path;
   std::filesystem::path out;  ///< empty: runs/<case>-calibrate
   std::vector<std::string> overrides;
-  double eta = 0.0;              ///< 0: that of the case
-  double relative_error = 0.02;  ///< standard error of the viscosity, over it
-  double shear_rate = 0.0;       ///< 0: in proportion to 1/gamma
-  std::int64_t particles = 0;    ///< of the measuring scene; 0: a cube of 8 (2D), 6 (3D) cutoffs
-  double limit_seconds = 0.0;    ///< of the whole; 0: none
+  double eta = 0.0;             ///< 0: that of the case
+  double relative_error = 0.0;  ///< standard error of the viscosity, over it; 0: 0.02
+  double shear_rate = 0.0;      ///< 0: in proportion to 1/gamma
+  std::int64_t particles = 0;   ///< of the measuring scene; 0: a cube of 8 (2D), 6 (3D) cutoffs
+  double limit_seconds = 0.0;   ///< of the whole; 0: none
   int threads = 1;
   bool measure_only = false;  ///< one measurement at the friction of the case
 };

@@ -26,11 +26,14 @@ struct BodySettings {
   std::int32_t species = 0;
   std::int64_t count = 1;         ///< at random positions, where there are no `positions`
   std::vector<Vec<D>> positions;  ///< of the centres (length)
-  std::vector<Rotation<D>>
-      orientations;         ///< of each at `positions`; without any, `shape` is not turned
+  /// Of each at `positions`; without any, `shape` is not turned.
+  std::vector<Rotation<D>> orientations;
   double clearance = 1.0;   ///< free space around a body placed at random (length)
   RigidMotion<D> velocity;  ///< for BodyMotion::given
   RigidLoad<D> load;        ///< force and torque on each, for BodyMotion::free
+  // What a calibration found (`odpd calibrate --radius`), for fractions and reports; 0: not known.
+  double hydrodynamic_radius = 0.0;  ///< of the ball with its mobility (length)
+  double excluded_volume = 0.0;      ///< that one takes from the fluid (length^d)
 
   std::int64_t bodies() const {
     return positions.empty() ? count : static_cast<std::int64_t>(positions.size());
@@ -53,6 +56,11 @@ struct BodySettings {
 /// are others. Throws ConfigError, also for a body as long as half of an edge of the box.
 template <int D>
 BodySettings<D> read_body(const Config& entry, const SceneSettings<D>& scene);
+
+/// Reads `hydrodynamic_radius` and `excluded_volume` of an entry whose bodies are read. Throws ConfigError where the space has no room for
+/// them.
+template <int D>
+void read_body_sizes(const Config& entry, const SceneSettings<D>& scene, BodySettings<D>& body);
 
 /// Turns a body as uniform random numbers u say: uniform over all orientations.
 void turn_at_random(const std::array<double, 4>& u, Rotation<2>& orientation);

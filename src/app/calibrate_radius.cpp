@@ -1,0 +1,293 @@
+#include "odpd/app/calibrate_radius.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "odpd/app/interrupt.h"
+#include "odpd/app/radius_run.h"
+#include "odpd/app/report.h"
+#include "odpd/app/run_output.h"
+#include "odpd/app/simulation.h"
+#include "odpd/core/error.h"
+#include "odpd/core/log.h"
+#include "odpd/core/timer.h"
+#include "odpd/io/csv.h"
+#include "odpd/io/file.h"
+#include "odpd/io/json.h"
+#include "odpd/version.h"
+
+namespace odpd {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Everything that was measured, and what follows from it.
+struct RadiusRecord {
+  MeasuredBody body;
+  std::vector<double> edges;  // in the order in which they are measured
+  double relative_error = 0.01;
+  PureFluid fluid;
+  std::vector<BodyInCell> cells;
+
+  /// Of the fluid at the density of a cell.
+  double eta(const BodyInCell& cell) const {
+    return fluid.eta.value *
+           std::pow(cell.density.value / fluid.density.value, body.viscosity_exponent());
+  }
+  Measured drag(const BodyInCell& cell) const { return drag_radius(cell, eta(cell)); }
+  Measured torque(const BodyInCell& cell) const { return torque_radius(cell, eta(cell)); }
+  template <class Quantity>
+  std::vector<Measured> of_cells(const Quantity& quantity) const {
+    std::vector<Measured> values;
+    for (const BodyInCell& cell : cells) values.push_back(quantity(cell));
+    return values;
+  }
+  /// Mean over the cells, with the error of eta, which all of them share.
+  Measured radius() const { return shared(&RadiusRecord::drag); }
+  Measured turning_radius() const { return shared(&RadiusRecord::torque); }
+  Measured at_infinity() const {
+    const auto values = of_cells([&](const BodyInCell& c) { return drag(c); });
+    return extrapolated(values, std::span(edges).first(values.size()));
+  }
+  Measured excluded() const {
+    return weighted_mean(of_cells([](const BodyInCell& c) { return excluded_volume(c); }));
+  }
+
+ private:
+  Measured shared(Measured (RadiusRecord::*quantity)(const BodyInCell&) const) const {
+    Measured mean =
+        weighted_mean(of_cells([&](const BodyInCell& c) { return (this->*quantity)(c); }));
+    RadiusRecord other = *this;
+    other.fluid.eta.value += fluid.eta.error;
+    const Measured moved =
+        weighted_mean(other.of_cells([&](const BodyInCell& c) { return (other.*quantity)(c); }));
+    mean.error = std::hypot(mean.error, moved.value - mean.value);
+    return mean;
+  }
+};
+
+template <int D>
+RadiusRecord read_body_record(const CalibrateRadiusOptions& options, const Config& config,
+                              const CaseSettings& settings) {
+  const Simulation<D> simulation(config, settings);
+  RadiusRecord record;
+  record.body = measured_body(config, simulation.scene(), settings.clock.dt, options.body);
+  record.edges = options.edges.empty() ? record.body.default_edges() : options.edges;
+  std::sort(record.edges.begin(), record.edges.end());
+  if (options.relative_error > 0.0) record.relative_error = options.relative_error;
+  const double least =
+      std::max(4.0 * record.body.reach, 2.0 * (record.body.reach + record.body.cutoff));
+  for (const double edge : record.edges)
+    if (!(edge > least))
+      throw ConfigError(fmt::format(
+          "--boxes: an edge of {:.6g} is too short: a body must be shorter than half of it, with a "
+          "cutoff of fluid beyond its {:.6g}; longer than {:.6g} will do",
+          edge, record.body.reach, least));
+  return record;
+}
+
+JsonObject json_of(const Measured& m) {
+  return JsonObject().set("mean", m.value).set("stderr", m.error);
+}
+
+Table radius_table(const RadiusRecord& r) {
+  Table table;
+  table.columns = {"edge",
+                   "particles",
+                   "samples",
+                   "density",
+                   "density_error",
+                   "translation",
+                   "translation_error",
+                   "rotation",
+                   "rotation_error",
+                   "radius",
+                   "radius_error",
+                   "torque_radius",
+                   "torque_radius_error",
+                   "excluded_volume",
+                   "excluded_volume_error"};
+  for (const BodyInCell& c : r.cells) {
+    std::vector<double> row{c.edge, static_cast<double>(c.particles),
+                            static_cast<double>(c.samples)};
+    for (const Measured& m :
+         {c.density, c.translation, c.rotation, r.drag(c), r.torque(c), excluded_volume(c)})
+      row.insert(row.end(), {m.value, m.error});
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+void write_radius(const fs::path& directory, const RadiusRecord& r, bool complete) {
+  const Table table = radius_table(r);
+  std::vector<JsonObject> boxes;
+  for (const std::vector<double>& row : table.rows) {
+    JsonObject box;
+    for (std::size_t k = 0; k < row.size(); ++k) box.set(table.columns[k], row[k]);
+    boxes.push_back(box);
+  }
+  JsonObject json;
+  json.set("version", ODPD_VERSION).set("dimension", r.body.dimension).set("body", r.body.name);
+  json.set("density", r.body.density)
+      .set("dt", r.body.dt)
+      .set("seed", r.body.seed)
+      .set("sites", r.body.sites)
+      .set("reach", r.body.reach)
+      .set("relative_error", r.relative_error)
+      .set("fluid", r.body.fluid);
+  json.set("pure_fluid", JsonObject()
+                             .set("particles", r.fluid.particles)
+                             .set("samples", r.fluid.samples)
+                             .set("density", r.fluid.density.value)
+                             .set("eta", json_of(r.fluid.eta)));
+  json.set("boxes", boxes);
+  if (complete)
+    json.set("result", JsonObject()
+                           .set("hydrodynamic_radius", json_of(r.radius()))
+                           .set("extrapolated", json_of(r.at_infinity()))
+                           .set("torque_radius", json_of(r.turning_radius()))
+                           .set("excluded_volume", json_of(r.excluded())));
+  write_file_atomically(directory / "radius.json", json.text() + "\n");
+  write_csv(directory / "radius.csv", table);
+}
+
+class RadiusCalibrator {
+ public:
+  RadiusCalibrator(const CalibrateRadiusOptions& options, RadiusRecord& record, fs::path directory)
+      : options_(options), record_(record), directory_(std::move(directory)) {}
+
+  /// False where it ended early.
+  bool measure() {
+    const MeasuredBody& body = record_.body;
+    // Of the radius, eta may have this part of the error, the mean over the boxes the rest.
+    constexpr double of_eta = 0.4, of_boxes = 0.85;
+    log_info("measuring the fluid alone");
+    record_.fluid = measure_pure_fluid(
+        body, options_.threads,
+        [&](const PureFluid& f) {
+          return f.eta.error <= of_eta * record_.relative_error * f.eta.value;
+        },
+        [&] { return stopped(); });
+    if (stopped()) return false;
+    fmt::print("  fluid alone at density {:.5g}: eta = {}\n", record_.fluid.density.value,
+               with_error(record_.fluid.eta.value, record_.fluid.eta.error));
+    fmt::print("  {:>8} {:>9} {:>18} {:>18} {:>18} {:>18} {:>18} {:>8}\n", "edge", "particles",
+               "density, far", "mobility", "radius by drag", "by torque", "excluded volume",
+               "seconds");
+    // Fluid keeps some half of a spacing away from sites.
+    double excluded = (body.dimension > 2 ? unit_ball_volume<3> : unit_ball_volume<2>)*std::pow(
+        body.reach + 0.6 * std::pow(body.density, -1.0 / body.dimension), body.dimension);
+    const double goal =
+        of_boxes * record_.relative_error * std::sqrt(static_cast<double>(record_.edges.size()));
+    for (const double edge : record_.edges) {
+      if (!measure_in(edge, excluded, goal)) return false;
+      excluded = record_.excluded().value;
+    }
+    return true;
+  }
+
+ private:
+  bool measure_in(double edge, double excluded, double goal) {
+    log_info(fmt::format("measuring in a box with an edge of {:.6g}", edge));
+    const Stopwatch watch;
+    bool complete = false;
+    BodyInCell cell = measure_body(
+        record_.body, edge, excluded, options_.threads,
+        [&](const BodyInCell& c) {
+          const Measured a = record_.drag(c);
+          // Without a radius, once there is an error that would tell, none will come.
+          complete =
+              a.error <= goal * a.value || (std::isnan(a.value) && c.translation.error > 0.0);
+          return complete;
+        },
+        [&] { return stopped(); });
+    if (!complete) return false;
+    if (std::isnan(record_.drag(cell).value))
+      throw SolverError(fmt::format(
+          "a box with an edge of {:.6g} is too small (or too large) for the series: the mobility "
+          "of "
+          "{} there, {}, is of no radius below {:.6g}; choose other --boxes",
+          edge, record_.body.name, with_error(cell.translation.value, cell.translation.error),
+          (record_.body.dimension > 2 ? 0.4 : 0.3) * edge));
+    record_.cells.push_back(cell);
+    write_radius(directory_, record_, false);
+    const auto text = [](const Measured& m) { return with_error(m.value, m.error); };
+    fmt::print("  {:>8.4g} {:>9} {:>18} {:>18} {:>18} {:>18} {:>18} {:>8.1f}\n", edge,
+               cell.particles, text(cell.density), text(cell.translation), text(record_.drag(cell)),
+               text(record_.torque(cell)), text(excluded_volume(cell)), watch.seconds());
+    std::fflush(stdout);
+    return true;
+  }
+
+  bool stopped() const {
+    return interrupted() ||
+           (options_.limit_seconds > 0.0 && watch_.seconds() > options_.limit_seconds);
+  }
+
+  const CalibrateRadiusOptions& options_;
+  RadiusRecord& record_;
+  fs::path directory_;
+  Stopwatch watch_;
+};
+
+std::string conclusion(const RadiusRecord& r) {
+  const auto text = [](const Measured& m) { return with_error(m.value, m.error); };
+  const Measured a = r.radius(), line = r.at_infinity(), v = r.excluded();
+  std::string out =
+      fmt::format("\nHydrodynamic radius of {}: {} (mean over the boxes)\n", r.body.name, text(a));
+  if (!std::isnan(line.value))
+    out +=
+        fmt::format("  by a line in 1/edge, which the series should leave level: {}\n", text(line));
+  out += fmt::format("  by torque: {}\n", text(r.turning_radius()));
+  if (!r.body.round)
+    out +=
+        "  It is longer than wide: the radius is that of the ball with its mean mobility, over all "
+        "directions, and the\n  torque's that of the ball with its mean rotational one\n";
+  out += fmt::format("Excluded volume: {}; a ball of the hydrodynamic radius has {:.5g}\n", text(v),
+                     (r.body.dimension > 2 ? unit_ball_volume<3> : unit_ball_volume<2>)*std::pow(
+                         a.value, r.body.dimension));
+  const double apart = std::abs(line.value - a.value);
+  if (apart > 2.0 * line.error && apart > 0.03 * a.value)
+    log_warning(
+        "the radius depends on the box: take larger ones (--boxes), as at a few cutoffs a fluid "
+        "has "
+        "another viscosity than on long ways (docs/generalised-hydrodynamics.md)");
+  out += fmt::format(
+      "\n[[body]]\nname = \"{}\"\n# measured at density {}, eta = {}\nhydrodynamic_radius = {:.5g}"
+      "   # +- {:.2g}\nexcluded_volume = {:.5g}   # +- {:.2g}\n",
+      r.body.name, r.body.density, text(r.fluid.eta), a.value, a.error, v.value, v.error);
+  return out;
+}
+
+}  // namespace
+
+int calibrate_radius(const CalibrateRadiusOptions& options) {
+  const Config config = open_case(options.case_path, options.overrides);
+  const std::string name = case_name(options.case_path);
+  const CaseSettings settings = read_case(config, name);
+  RadiusRecord record = settings.dimension == 2 ? read_body_record<2>(options, config, settings)
+                                                : read_body_record<3>(options, config, settings);
+  const fs::path directory =
+      options.out.empty() ? fs::path("runs") / (name + "-radius") : options.out;
+  const RunLock lock = prepare_run_directory(directory);
+  catch_signals();
+  fmt::print("One {} of {} particles, in periodic {} at density {:.5g}, dt = {}\n",
+             record.body.name, record.body.sites, settings.dimension == 2 ? "squares" : "cubes",
+             record.body.density, record.body.dt);
+  const bool done = RadiusCalibrator(options, record, directory).measure();
+  write_radius(directory, record, done);
+  if (!done && interrupted()) return 130;
+  if (!done)
+    throw Error(fmt::format("--limit-seconds is over before the radius is known to {} %: the boxes "
+                            "that are done are in {}",
+                            100.0 * record.relative_error, (directory / "radius.json").string()),
+                4);
+  fmt::print("{}\nEverything is in {}\n", conclusion(record), (directory / "radius.json").string());
+  return 0;
+}
+
+}  // namespace odpd

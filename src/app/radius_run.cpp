@@ -1,0 +1,296 @@
+#include "odpd/app/radius_run.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "odpd/analysis/block_average.h"
+#include "odpd/app/calibrated_model.h"
+#include "odpd/app/calibration_run.h"
+#include "odpd/app/simulation.h"
+#include "odpd/core/parallel.h"
+#include "odpd/pairs/dpd.h"
+
+namespace odpd {
+
+namespace {
+
+// Steps between two configurations, and before the first: density and structure settle within some explicit limits of the step.
+constexpr std::int64_t between_samples = 10, settling = 200;
+
+// Lines of a table of the case, without some of its keys.
+std::string lines_of(const ConfigValues& values, const std::set<std::string>& without) {
+  std::string lines;
+  for (const auto& [path, value] : values) {
+    const std::string key = path.substr(0, path.find('.'));
+    if (!without.contains(key)) lines += fmt::format("{} = {}\n", path, value);
+  }
+  return lines;
+}
+
+std::string tables_of(const Config& config, const std::string& name) {
+  std::string text;
+  if (config.has(name))
+    for (const ConfigValues& element : config.elements(name))
+      text += fmt::format("[[{}]]\n{}", name, lines_of(element, {}));
+  return text;
+}
+
+// Names, and how the fluid's particles are shared among them whatever their number.
+std::string species_text(const std::vector<SpeciesSettings>& species) {
+  std::string text;
+  double counted = 0.0;
+  for (const SpeciesSettings& s : species) counted += std::max(0.0, static_cast<double>(s.count));
+  for (const SpeciesSettings& s : species)
+    text += fmt::format("[[species]]\nname = \"{}\"\n", s.name) +
+            (s.count == 0  ? "count = 0\n"
+             : s.count > 0 ? fmt::format("fraction = {}\n", static_cast<double>(s.count) / counted)
+             : s.fraction < 1.0 ? fmt::format("fraction = {}\n", s.fraction)
+                                : "");
+  return species.size() > 1 ? text : std::string{};
+}
+
+template <int D>
+std::string fluid_lines(const Config& portable, const SceneSettings<D>& s, double density,
+                        bool counted) {
+  // What physical inputs and calibrations came to, as these go by a density.
+  if (const DpdFluid* dpd = dpd_fluid(*s.model))
+    return calibrated_dpd(dpd->p, D, density)->keys() +
+           fmt::format("gamma = {}\ngamma_perp = {}\n", dpd->p.gamma, dpd->p.gamma_perp);
+  const std::string lines =
+      lines_of(portable.values("fluid"),
+               {"density", "count", "mass", "rho", "zeta_0", "zeta_0_under_flow", "calibration"});
+  return counted ? lines : lines + fmt::format("density = {}\n", density);
+}
+
+template <int D>
+std::size_t index_of_body(const Config& config, const std::vector<BodySettings<D>>& bodies,
+                          const std::string& name) {
+  std::vector<std::string> free;
+  for (const BodySettings<D>& b : bodies)
+    if (b.motion == BodyMotion::free) free.push_back(b.name);
+  if (free.empty())
+    config.fail("body", "--radius measures the drag of a free body, and there is none here");
+  if (name.empty() && free.size() > 1)
+    config.fail("body", fmt::format("say which one, as --radius {}: {} are free", free.front(),
+                                    fmt::join(free, ", ")));
+  const std::string& wanted = name.empty() ? free.front() : name;
+  if (std::find(free.begin(), free.end(), wanted) == free.end())
+    config.fail("body", fmt::format("--radius {}: there is no free [[body]] of that name, but {}",
+                                    wanted, fmt::join(free, ", ")));
+  std::size_t at = 0;
+  while (bodies[at].name != wanted) ++at;
+  return at;
+}
+
+// As far in one direction as in the others, nearly.
+template <int D>
+bool is_round(const std::vector<Vec<D>>& shape) {
+  Vec<D> squares{};
+  for (const Vec<D>& p : shape)
+    for (int c = 0; c < D; ++c) squares[c] += p[c] * p[c];
+  double sum = 0.0, largest = 0.0;
+  for (const double s : squares.x) sum += s, largest = std::max(largest, s);
+  constexpr double nearly = 1.2;
+  return largest < nearly * sum / D;
+}
+
+template <int D>
+void check_measurable(const Config& config, const Scene<D>& scene, const Config& entry,
+                      const BodySettings<D>& body) {
+  const Config fluid = config.table("fluid");
+  const SceneSettings<D>& s = scene.settings();
+  if (!s.model->thermal())
+    fluid.fail("kT", "configurations are sampled at equilibrium, which needs kT > 0");
+  if (s.mass > 0.0)
+    fluid.fail("mass",
+               "configurations and friction are those without mass, and so are measured: add "
+               "--set fluid.mass=0.0 (with physical inputs that need a mass give gamma, a, s)");
+  if (!body.shapes.empty())
+    entry.fail("radius",
+               "bodies of several sizes have several radii: choose one, as by --set "
+               "body.0.radius=1.0");
+}
+
+// One step of explicit repulsion at most .6 of the accurate one.
+template <int D>
+double measuring_step(const Scene<D>& scene, double dt) {
+  const auto limit = scene.explicit_step_limit();
+  return limit ? std::min(dt, 0.6 * *limit) : dt;
+}
+
+// All of it but the observers and the body. `count`: of fluid particles.
+std::string scene_text(const MeasuredBody& m, double edge, std::int64_t count) {
+  std::string edges, periodic;
+  for (int c = 0; c < m.dimension; ++c) {
+    edges += fmt::format("{}{}", c > 0 ? ", " : "", edge);
+    periodic += c > 0 ? ", true" : "true";
+  }
+  return fmt::format(
+      "dimension = {}\nseed = {}\n[box]\nsize = [{}]\nperiodic = [{}]\n[fluid]\n{}{}{}"
+      "[integrator]\nname = \"trapezoidal\"\ndt = {}\n[solver]\ntolerance = 1e-4\n"
+      "[run]\nequilibrate = {}\nduration = {}\n",
+      m.dimension, m.seed, edges, periodic, m.fluid,
+      m.counted ? fmt::format("count = {}\n", count) : "", m.species, m.dt,
+      static_cast<double>(settling) * m.dt, 1e12 * m.dt);
+}
+
+std::string body_text(const MeasuredBody& m, double edge) {
+  std::string middle;
+  for (int c = 0; c < m.dimension; ++c)
+    middle += fmt::format("{}{}", c > 0 ? ", " : "", 0.5 * edge);
+  return fmt::format(
+      "[[body]]\n{}positions = [{{ at = [{}] }}]\n[[observe]]\nkind = \"mobility\"\nevery = {}\n",
+      m.body, middle, between_samples);
+}
+
+Measured measured(const Results& results, const std::string& name) {
+  const Scalar* s = results.find(name);
+  return {s->mean, s->standard_error};
+}
+
+// Runs until `look` says it is enough, which is asked after each sample.
+template <int D>
+void sample_until(Simulation<D>& simulation, const std::function<bool()>& look,
+                  const std::function<bool()>& stop) {
+  bool enough = false;
+  simulation.run([&] { return enough || stop(); },
+                 [&] {
+                   const Clock& clock = simulation.clock();
+                   if (clock.measuring() && clock.measured_steps() % between_samples == 0)
+                     enough = look();
+                 });
+}
+
+template <int D>
+PureFluid pure_fluid_in(const MeasuredBody& m, int threads,
+                        const std::function<bool(const PureFluid&)>& enough,
+                        const std::function<bool()>& stop) {
+  const std::int64_t count = default_particles(D, m.density, m.cutoff);
+  const double edge = std::pow(static_cast<double>(count) / m.density, 1.0 / D);
+  const Config config = Config::from_text(
+      scene_text(m, edge, count) + fmt::format("[[observe]]\nkind = \"high-frequency-viscosity\"\n"
+                                               "every = {}\n",
+                                               between_samples),
+      "measuring scene");
+  Simulation<D> simulation(config, read_case(config, "measuring scene"));
+  set_threads(threads, simulation.scene().particles().size());
+  PureFluid fluid;
+  fluid.particles = simulation.scene().particles().size();
+  fluid.density.value = static_cast<double>(fluid.particles) / simulation.scene().box().volume();
+  sample_until(
+      simulation,
+      [&] {
+        fluid.eta = measured(simulation.results(), "high-frequency-viscosity.eta");
+        ++fluid.samples;
+        return enough(fluid);
+      },
+      stop);
+  return fluid;
+}
+
+// Free particles beyond `far` from the body's centre.
+template <int D>
+double count_far(const Scene<D>& scene, double far) {
+  const Particles<D>& particles = scene.particles();
+  const Vec<D>& centre = particles.bodies[0].pose.centre;
+  double count = 0.0;
+  for (std::size_t i = 0; i < particles.position.size(); ++i)
+    if (particles.is_free(i) && norm(scene.box().separation(particles.position[i], centre)) > far)
+      count += 1.0;
+  return count;
+}
+
+template <int D>
+BodyInCell body_in(const MeasuredBody& m, double edge, double excluded, int threads,
+                   const std::function<bool(const BodyInCell&)>& enough,
+                   const std::function<bool()>& stop) {
+  const double volume = std::pow(edge, D), far = m.far(edge);
+  const Config config = Config::from_text(
+      scene_text(m, edge, std::llround(m.density * (volume - excluded))) + body_text(m, edge),
+      "measuring scene");
+  Simulation<D> simulation(config, read_case(config, "measuring scene"));
+  set_threads(threads, simulation.scene().particles().size());
+  BodyInCell cell{.dimension = D,
+                  .edge = edge,
+                  .particles = simulation.scene().particles().size(),
+                  .sites = m.sites};
+  BlockAverage density;
+  const double far_volume = volume - unit_ball_volume<D> * std::pow(far, D);
+  sample_until(
+      simulation,
+      [&] {
+        density.add(std::array{count_far(simulation.scene(), far) / far_volume});
+        const Results results = simulation.results();
+        cell.translation = measured(results, "mobility." + m.name + ".translation");
+        cell.rotation = measured(results, "mobility." + m.name + ".rotation");
+        cell.density = {density.mean(0), density.standard_error(0)};
+        cell.samples = density.samples();
+        return enough(cell);
+      },
+      stop);
+  return cell;
+}
+
+}  // namespace
+
+std::vector<double> MeasuredBody::default_edges() const {
+  const double unit = reach + 0.5 * cutoff;
+  if (dimension > 2) return {4.0 * unit, 5.0 * unit, 6.0 * unit};
+  return {4.0 * unit, 6.0 * unit, 8.0 * unit};
+}
+
+double MeasuredBody::far(double edge) const { return std::min(reach + 1.5 * cutoff, 0.5 * edge); }
+
+template <int D>
+MeasuredBody measured_body(const Config& config, const Scene<D>& scene, double dt,
+                           const std::string& name) {
+  const SceneSettings<D>& s = scene.settings();
+  const std::size_t at = index_of_body(config, s.bodies, name);
+  const BodySettings<D>& body = s.bodies[at];
+  check_measurable(config, scene, config.tables("body")[at], body);
+  const Config portable = Config::from_text(portable_case(config), "case.toml");
+  const auto reference = s.model->reference_state(0.0);
+  MeasuredBody m;
+  m.dimension = D;
+  m.name = body.name;
+  m.counted = !reference || reference->spacing == 0.0;
+  m.density = reference ? reference->density
+              : s.count >= 0 || s.start == StartKind::file
+                  ? static_cast<double>(scene.particles().free_count()) / s.fluid_volume()
+                  : s.density;
+  m.fluid = fluid_lines(portable, s, m.density, m.counted);
+  m.species = species_text(s.species) + tables_of(portable, "pair");
+  m.body = lines_of(portable.elements("body")[at],
+                    {"positions", "count", "fraction", "fraction_of", "clearance", "force",
+                     "torque", "hydrodynamic_radius", "excluded_volume"});
+  m.sites = static_cast<std::int64_t>(body.shape.size());
+  m.reach = body.radius();
+  m.round = is_round<D>(body.shape);
+  m.cutoff = s.model->cutoff();
+  m.dt = measuring_step(scene, dt);
+  m.seed = s.seed;
+  return m;
+}
+
+PureFluid measure_pure_fluid(const MeasuredBody& body, int threads,
+                             const std::function<bool(const PureFluid&)>& enough,
+                             const std::function<bool()>& stop) {
+  return body.dimension == 2 ? pure_fluid_in<2>(body, threads, enough, stop)
+                             : pure_fluid_in<3>(body, threads, enough, stop);
+}
+
+BodyInCell measure_body(const MeasuredBody& body, double edge, double excluded, int threads,
+                        const std::function<bool(const BodyInCell&)>& enough,
+                        const std::function<bool()>& stop) {
+  return body.dimension == 2 ? body_in<2>(body, edge, excluded, threads, enough, stop)
+                             : body_in<3>(body, edge, excluded, threads, enough, stop);
+}
+
+template MeasuredBody measured_body<2>(const Config&, const Scene<2>&, double, const std::string&);
+template MeasuredBody measured_body<3>(const Config&, const Scene<3>&, double, const std::string&);
+
+}  // namespace odpd
