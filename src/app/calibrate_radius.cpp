@@ -7,68 +7,19 @@
 #include <cstdio>
 
 #include "odpd/app/interrupt.h"
-#include "odpd/app/radius_run.h"
+#include "odpd/app/radius_record.h"
 #include "odpd/app/report.h"
 #include "odpd/app/run_output.h"
 #include "odpd/app/simulation.h"
 #include "odpd/core/error.h"
 #include "odpd/core/log.h"
 #include "odpd/core/timer.h"
-#include "odpd/io/csv.h"
-#include "odpd/io/file.h"
-#include "odpd/io/json.h"
-#include "odpd/version.h"
 
 namespace odpd {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Everything that was measured, and what follows from it.
-struct RadiusRecord {
-  MeasuredBody body;
-  std::vector<double> edges;  // in the order in which they are measured
-  double relative_error = 0.01;
-  PureFluid fluid;
-  std::vector<BodyInCell> cells;
-
-  /// Of the fluid at the density of a cell.
-  double eta(const BodyInCell& cell) const {
-    return fluid.eta.value *
-           std::pow(cell.density.value / fluid.density.value, body.viscosity_exponent());
-  }
-  Measured drag(const BodyInCell& cell) const { return drag_radius(cell, eta(cell)); }
-  Measured torque(const BodyInCell& cell) const { return torque_radius(cell, eta(cell)); }
-  template <class Quantity>
-  std::vector<Measured> of_cells(const Quantity& quantity) const {
-    std::vector<Measured> values;
-    for (const BodyInCell& cell : cells) values.push_back(quantity(cell));
-    return values;
-  }
-  /// Mean over the cells, with the error of eta, which all of them share.
-  Measured radius() const { return shared(&RadiusRecord::drag); }
-  Measured turning_radius() const { return shared(&RadiusRecord::torque); }
-  Measured at_infinity() const {
-    const auto values = of_cells([&](const BodyInCell& c) { return drag(c); });
-    return extrapolated(values, std::span(edges).first(values.size()));
-  }
-  Measured excluded() const {
-    return weighted_mean(of_cells([](const BodyInCell& c) { return excluded_volume(c); }));
-  }
-
- private:
-  Measured shared(Measured (RadiusRecord::*quantity)(const BodyInCell&) const) const {
-    Measured mean =
-        weighted_mean(of_cells([&](const BodyInCell& c) { return (this->*quantity)(c); }));
-    RadiusRecord other = *this;
-    other.fluid.eta.value += fluid.eta.error;
-    const Measured moved =
-        weighted_mean(other.of_cells([&](const BodyInCell& c) { return (other.*quantity)(c); }));
-    mean.error = std::hypot(mean.error, moved.value - mean.value);
-    return mean;
-  }
-};
 
 template <int D>
 RadiusRecord read_body_record(const CalibrateRadiusOptions& options, const Config& config,
@@ -90,70 +41,22 @@ RadiusRecord read_body_record(const CalibrateRadiusOptions& options, const Confi
   return record;
 }
 
-JsonObject json_of(const Measured& m) {
-  return JsonObject().set("mean", m.value).set("stderr", m.error);
+// An earlier calibration of the same is gone on with, of something else moved aside.
+RunLock prepare_radius_directory(const fs::path& directory, RadiusRecord& record) {
+  const fs::path file = directory / "radius.json";
+  if (!fs::exists(file) || !RunLock::marks(directory)) return prepare_run_directory(directory);
+  bool same = false;
+  {
+    const RunLock lock(directory);
+    same = continue_radius(file, record);
+  }
+  if (same) return RunLock(directory);
+  log_info(fmt::format("{} is of another fluid or body", file.string()));
+  return prepare_run_directory(directory);
 }
 
-Table radius_table(const RadiusRecord& r) {
-  Table table;
-  table.columns = {"edge",
-                   "particles",
-                   "samples",
-                   "density",
-                   "density_error",
-                   "translation",
-                   "translation_error",
-                   "rotation",
-                   "rotation_error",
-                   "radius",
-                   "radius_error",
-                   "torque_radius",
-                   "torque_radius_error",
-                   "excluded_volume",
-                   "excluded_volume_error"};
-  for (const BodyInCell& c : r.cells) {
-    std::vector<double> row{c.edge, static_cast<double>(c.particles),
-                            static_cast<double>(c.samples)};
-    for (const Measured& m :
-         {c.density, c.translation, c.rotation, r.drag(c), r.torque(c), excluded_volume(c)})
-      row.insert(row.end(), {m.value, m.error});
-    table.rows.push_back(row);
-  }
-  return table;
-}
-
-void write_radius(const fs::path& directory, const RadiusRecord& r, bool complete) {
-  const Table table = radius_table(r);
-  std::vector<JsonObject> boxes;
-  for (const std::vector<double>& row : table.rows) {
-    JsonObject box;
-    for (std::size_t k = 0; k < row.size(); ++k) box.set(table.columns[k], row[k]);
-    boxes.push_back(box);
-  }
-  JsonObject json;
-  json.set("version", ODPD_VERSION).set("dimension", r.body.dimension).set("body", r.body.name);
-  json.set("density", r.body.density)
-      .set("dt", r.body.dt)
-      .set("seed", r.body.seed)
-      .set("sites", r.body.sites)
-      .set("reach", r.body.reach)
-      .set("relative_error", r.relative_error)
-      .set("fluid", r.body.fluid);
-  json.set("pure_fluid", JsonObject()
-                             .set("particles", r.fluid.particles)
-                             .set("samples", r.fluid.samples)
-                             .set("density", r.fluid.density.value)
-                             .set("eta", json_of(r.fluid.eta)));
-  json.set("boxes", boxes);
-  if (complete)
-    json.set("result", JsonObject()
-                           .set("hydrodynamic_radius", json_of(r.radius()))
-                           .set("extrapolated", json_of(r.at_infinity()))
-                           .set("torque_radius", json_of(r.turning_radius()))
-                           .set("excluded_volume", json_of(r.excluded())));
-  write_file_atomically(directory / "radius.json", json.text() + "\n");
-  write_csv(directory / "radius.csv", table);
-}
+// Below, a standard error is hardly known.
+constexpr std::int64_t least_samples = 32;
 
 class RadiusCalibrator {
  public:
@@ -165,14 +68,15 @@ class RadiusCalibrator {
     const MeasuredBody& body = record_.body;
     // Of the radius, eta may have this part of the error, the mean over the boxes the rest.
     constexpr double of_eta = 0.4, of_boxes = 0.85;
-    log_info("measuring the fluid alone");
-    record_.fluid = measure_pure_fluid(
-        body, options_.threads,
-        [&](const PureFluid& f) {
-          return f.eta.error <= of_eta * record_.relative_error * f.eta.value;
-        },
-        [&] { return stopped(); });
-    if (stopped()) return false;
+    const auto known = [&](const PureFluid& f) {
+      return f.samples >= least_samples &&
+             f.eta.error <= of_eta * record_.relative_error * f.eta.value;
+    };
+    if (!known(record_.fluid)) {
+      log_info("measuring the fluid alone");
+      record_.fluid = measure_pure_fluid(body, options_.threads, known, [&] { return stopped(); });
+      if (!known(record_.fluid)) return false;
+    }
     fmt::print("  fluid alone at density {:.5g}: eta = {}\n", record_.fluid.density.value,
                with_error(record_.fluid.eta.value, record_.fluid.eta.error));
     fmt::print("  {:>8} {:>9} {:>18} {:>18} {:>18} {:>18} {:>18} {:>8}\n", "edge", "particles",
@@ -192,19 +96,21 @@ class RadiusCalibrator {
 
  private:
   bool measure_in(double edge, double excluded, double goal) {
-    log_info(fmt::format("measuring in a box with an edge of {:.6g}", edge));
     const Stopwatch watch;
     bool complete = false;
-    BodyInCell cell = measure_body(
-        record_.body, edge, excluded, options_.threads,
-        [&](const BodyInCell& c) {
-          const Measured a = record_.drag(c);
-          // Without a radius, once there is an error that would tell, none will come.
-          complete =
-              a.error <= goal * a.value || (std::isnan(a.value) && c.translation.error > 0.0);
-          return complete;
-        },
-        [&] { return stopped(); });
+    const auto known = [&](const BodyInCell& c) {
+      const Measured a = record_.drag(c);
+      // Without a radius, once there is an error that would tell, none will come.
+      complete = c.samples >= least_samples &&
+                 (a.error <= goal * a.value || (std::isnan(a.value) && c.translation.error > 0.0));
+      return complete;
+    };
+    BodyInCell cell = record_.take(edge);
+    if (!known(cell)) {
+      log_info(fmt::format("measuring in a box with an edge of {:.6g}", edge));
+      cell = measure_body(record_.body, edge, excluded, options_.threads, known,
+                          [&] { return stopped(); });
+    }
     if (!complete) return false;
     if (std::isnan(record_.drag(cell).value))
       throw SolverError(fmt::format(
@@ -213,7 +119,7 @@ class RadiusCalibrator {
           "{} there, {}, is of no radius below {:.6g}; choose other --boxes",
           edge, record_.body.name, with_error(cell.translation.value, cell.translation.error),
           (record_.body.dimension > 2 ? 0.4 : 0.3) * edge));
-    record_.cells.push_back(cell);
+    record_.add(cell);
     write_radius(directory_, record_, false);
     const auto text = [](const Measured& m) { return with_error(m.value, m.error); };
     fmt::print("  {:>8.4g} {:>9} {:>18} {:>18} {:>18} {:>18} {:>18} {:>8.1f}\n", edge,
@@ -273,7 +179,7 @@ int calibrate_radius(const CalibrateRadiusOptions& options) {
                                                 : read_body_record<3>(options, config, settings);
   const fs::path directory =
       options.out.empty() ? fs::path("runs") / (name + "-radius") : options.out;
-  const RunLock lock = prepare_run_directory(directory);
+  const RunLock lock = prepare_radius_directory(directory, record);
   catch_signals();
   fmt::print("One {} of {} particles, in periodic {} at density {:.5g}, dt = {}\n",
              record.body.name, record.body.sites, settings.dimension == 2 ? "squares" : "cubes",
@@ -282,10 +188,12 @@ int calibrate_radius(const CalibrateRadiusOptions& options) {
   write_radius(directory, record, done);
   if (!done && interrupted()) return 130;
   if (!done)
-    throw Error(fmt::format("--limit-seconds is over before the radius is known to {} %: the boxes "
-                            "that are done are in {}",
-                            100.0 * record.relative_error, (directory / "radius.json").string()),
-                4);
+    throw Error(
+        fmt::format(
+            "--limit-seconds is over before the radius is known to {} %: the boxes that are "
+            "done are in {}, and the same command goes on from there",
+            100.0 * record.relative_error, (directory / "radius.json").string()),
+        4);
   fmt::print("{}\nEverything is in {}\n", conclusion(record), (directory / "radius.json").string());
   return 0;
 }

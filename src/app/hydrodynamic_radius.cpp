@@ -86,22 +86,32 @@ Measured excluded_volume(const BodyInCell& cell) {
   return {cell.volume() - cell.fluid() / n, cell.fluid() / (n * n) * cell.density.error};
 }
 
-Measured drag_radius(const BodyInCell& cell, double eta) {
-  const double mean = static_cast<double>(cell.particles) / cell.volume();
-  const auto radius = [&](double mobility, double n) {
-    return radius_of_mobility(cell.dimension, eta * mobility * std::pow(mean / n, 2), cell.edge);
-  };
-  const auto of_mobility = [&](double m) { return radius(m, cell.density.value); };
-  const auto of_density = [&](double n) { return radius(cell.translation.value, n); };
-  return {of_mobility(cell.translation.value), std::hypot(propagated(of_mobility, cell.translation),
-                                                          propagated(of_density, cell.density))};
+namespace {
+
+// Of radius(mobility, n).
+Measured radius_with_error(const std::function<double(double, double)>& radius,
+                           const Measured& mobility, const Measured& density) {
+  const double m = mobility.value, n = density.value;
+  return {radius(m, n), std::hypot(propagated([&](double x) { return radius(x, n); }, mobility),
+                                   propagated([&](double x) { return radius(m, x); }, density))};
 }
 
-Measured torque_radius(const BodyInCell& cell, double eta) {
-  const auto radius = [&](double w) {
-    return radius_of_rotation(cell.dimension, eta * w, cell.edge);
+}  // namespace
+
+Measured drag_radius(const BodyInCell& cell, const FluidViscosity& fluid) {
+  const double mean = static_cast<double>(cell.particles) / cell.volume();
+  const auto radius = [&](double mobility, double n) {
+    return radius_of_mobility(cell.dimension, fluid.at(n) * mobility * std::pow(mean / n, 2),
+                              cell.edge);
   };
-  return {radius(cell.rotation.value), propagated(radius, cell.rotation)};
+  return radius_with_error(radius, cell.translation, cell.density);
+}
+
+Measured torque_radius(const BodyInCell& cell, const FluidViscosity& fluid) {
+  const auto radius = [&](double w, double n) {
+    return radius_of_rotation(cell.dimension, fluid.at(n) * w, cell.edge);
+  };
+  return radius_with_error(radius, cell.rotation, cell.density);
 }
 
 }  // namespace odpd

@@ -110,11 +110,14 @@ TEST(HydrodynamicRadius, OfAMobilityRelativeToAllParticles) {
                           .sites = sites,
                           .translation = {to_all, 0.02 * to_all},
                           .density = {n, 0.0}};
-    const Measured radius = odpd::drag_radius(cell, eta);
+    const Measured radius = odpd::drag_radius(cell, {eta, n, 2.0});
     EXPECT_NEAR(radius.value, a, 1e-9) << sites;
     // da/a = -dU/U/(1 + 2.84 a/(L - 2.84 a)), nearly.
     EXPECT_NEAR(radius.error, 0.02 * (1.0 - 2.84 / 6.0), 0.001);
     EXPECT_NEAR(odpd::excluded_volume(cell).value, v_ex, 1e-9);
+    // A fluid of another density has another viscosity.
+    EXPECT_NEAR(odpd::drag_radius(cell, {eta * 1.21, 1.1 * n, 2.0}).value, a, 1e-9);
+    EXPECT_NEAR(odpd::drag_radius(cell, {eta, 1.1 * n, 0.0}).value, a, 1e-9);
   }
 }
 

@@ -21,6 +21,7 @@
 //   v_ex = V - (N - p)/n.
 //
 // It is an integral over all of g(q) - 1, where an exclusion radius is a threshold on g(q) near 0.
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -57,8 +58,13 @@ struct BodyInCell {
 
 /// v_ex (length^d).
 Measured excluded_volume(const BodyInCell& cell);
-/// By the drag, and by the torque, with eta the viscosity of the fluid at the density n; errors of the mobilities and of n.
-Measured drag_radius(const BodyInCell& cell, double eta);
-Measured torque_radius(const BodyInCell& cell, double eta);
+/// Of the fluid alone: eta at a density, and as which power of the density it goes near it.
+struct FluidViscosity {
+  double eta = 1.0, density = 1.0, exponent = 2.0;
+  double at(double n) const { return eta * std::pow(n / density, exponent); }
+};
+/// By the drag, and by the torque; errors of the mobilities and of n, not of eta. (With the exponent 2 the drag's does not depend on n.)
+Measured drag_radius(const BodyInCell& cell, const FluidViscosity& fluid);
+Measured torque_radius(const BodyInCell& cell, const FluidViscosity& fluid);
 
 }  // namespace odpd
