@@ -26,29 +26,39 @@ std::array<double, 2> work_of(const StepRecord<D>& record, const Slip& slip_of) 
 
 template <int D>
 ForceAnswer<D> answer_to_force(const Particles<D>& particles, const StepRecord<D>& record,
-                               const std::vector<Vec<D>>& force, double zeta_0, double tolerance) {
+                               const std::vector<Vec<D>>& force, double zeta_0, double tolerance,
+                               const FrozenPressure<D>* pressure) {
   const PairNetwork<D>& network = record.start.network;
   ForceAnswer<D> answer;
   answer.velocity = record.respond(force, tolerance);
-  const std::vector<Vec<D>>& w = answer.velocity;
+  std::vector<Vec<D>>& w = answer.velocity;
+  const Share own = particles.owned();
+  double of_rates = 0.0;
+  if (pressure != nullptr) {
+    double plain = 0.0;
+    for (auto i = index(own.first); i < index(own.end(std::ssize(w))); ++i)
+      plain += dot(force[i], w[i]);
+    std::vector<double> rates = pressure->rates_of(w);
+    of_rates = pressure->hold(rates, w, particles.ranks().sum(plain), tolerance).work;
+  }
   const auto [power, noise] = work_of<D>(
       record, [&](std::size_t k) { return w[index(network.i[k])] - w[index(network.j[k])]; });
   double along = 0.0, drag = 0.0;
-  const Share own = particles.owned();
   for (auto i = index(own.first); i < index(own.end(std::ssize(w))); ++i) {
     along += dot(force[i], w[i]);
     drag += zeta_0 * dot(w[i], w[i]);
   }
   std::array<double, 2> sums{2.0 * along - power - drag, noise};
   particles.ranks().sum(std::span(sums));
-  answer.mobility = sums[0];
+  answer.mobility = sums[0] - 2.0 * of_rates;
   answer.noise = sums[1];
   return answer;
 }
 
 template <int D>
 FlowAnswer answer_to_flow(const Particles<D>& particles, const StepRecord<D>& record,
-                          const Gradient<D>& E, double tolerance) {
+                          const Gradient<D>& E, double tolerance,
+                          const FrozenPressure<D>* pressure) {
   const PairNetwork<D>& network = record.start.network;
   const ForcePoints<D> points(particles, record.start);
   const auto affine = [&](std::size_t k) {
@@ -61,19 +71,31 @@ FlowAnswer answer_to_flow(const Particles<D>& particles, const StepRecord<D>& re
   for (std::size_t k = 0; k < friction.size(); ++k)
     friction[k] = -1.0 * friction_of<D>(network, k, affine(k));
   add_edge_forces<D>(network, friction, load);
-  const std::vector<Vec<D>> w = record.respond(load, tolerance);
-  std::array<double, 2> sums = work_of<D>(record, [&](std::size_t k) {
-    return affine(k) - w[index(network.i[k])] + w[index(network.j[k])];
-  });
+  // u = -w, what the particles move besides the flow.
+  std::vector<Vec<D>> u = record.respond(load, tolerance);
+  for (Vec<D>& v : u) v = -1.0 * v;
+  const auto slip = [&](std::size_t k) {
+    return affine(k) + u[index(network.i[k])] - u[index(network.j[k])];
+  };
+  double of_rates = 0.0;
+  if (pressure != nullptr) {
+    const double plain = particles.ranks().sum(work_of<D>(record, slip)[0]);
+    std::vector<Vec<D>> slips(friction.size());
+    for (std::size_t k = 0; k < slips.size(); ++k) slips[k] = slip(k);
+    std::vector<double> rates = pressure->rates(slips);
+    of_rates = pressure->hold(rates, u, plain, tolerance).work;
+  }
+  std::array<double, 2> sums = work_of<D>(record, slip);
   particles.ranks().sum(std::span(sums));
-  return {.power = sums[0], .noise = sums[1]};
+  return {.power = sums[0] + 2.0 * of_rates, .noise = sums[1]};
 }
 
-#define ODPD_INSTANTIATE(D)                                                               \
-  template ForceAnswer<D> answer_to_force<D>(const Particles<D>&, const StepRecord<D>&,   \
-                                             const std::vector<Vec<D>>&, double, double); \
-  template FlowAnswer answer_to_flow<D>(const Particles<D>&, const StepRecord<D>&,        \
-                                        const Gradient<D>&, double);
+#define ODPD_INSTANTIATE(D)                                                              \
+  template ForceAnswer<D> answer_to_force<D>(const Particles<D>&, const StepRecord<D>&,  \
+                                             const std::vector<Vec<D>>&, double, double, \
+                                             const FrozenPressure<D>*);                  \
+  template FlowAnswer answer_to_flow<D>(const Particles<D>&, const StepRecord<D>&,       \
+                                        const Gradient<D>&, double, const FrozenPressure<D>*);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)
 #undef ODPD_INSTANTIATE

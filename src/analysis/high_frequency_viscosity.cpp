@@ -66,6 +66,7 @@ std::unique_ptr<Observer<D>> HighFrequencyViscosity<D>::make(const ObserverEntry
   if (entry.in_time) refuse_frozen(entry);
   HighFrequencySettings flows;
   flows.planes = read_planes<D>(entry.config);
+  flows.incompressible = read_incompressible(entry);
   flows.tolerance = read_frozen_tolerance(entry.config);
   return std::make_unique<HighFrequencyViscosity<D>>(std::move(settings), std::move(flows),
                                                      entry.scene);
@@ -73,17 +74,23 @@ std::unique_ptr<Observer<D>> HighFrequencyViscosity<D>::make(const ObserverEntry
 
 template <int D>
 double HighFrequencyViscosity<D>::solves() const {
-  return static_cast<double>(flows_.planes.size()) / static_cast<double>(this->settings().every);
+  const auto solves = static_cast<double>(flows_.planes.size());
+  return (flows_.incompressible ? 1.0 + solves_with_pressure * solves : solves) /
+         static_cast<double>(this->settings().every);
 }
 
 template <int D>
 void HighFrequencyViscosity<D>::measure(const Clock&, const Particles<D>& particles,
                                         const StepRecord<D>& record) {
+  const std::optional<FrozenPressure<D>> pressure =
+      pressure_on<D>(particles, record, scene_, flows_.incompressible, flows_.tolerance);
   std::vector<double> sample(1, 0.0);
   for (const FlowPlane& plane : flows_.planes) {
     const Gradient<D> E = shear_gradient<D>(plane.flow, plane.gradient);
-    sample.push_back(answer_to_flow(particles, record, E, flows_.tolerance).power /
-                     scene_.box().volume());
+    sample.push_back(
+        answer_to_flow(particles, record, E, flows_.tolerance, pressure ? &*pressure : nullptr)
+            .power /
+        scene_.box().volume());
     sample[0] += sample.back() / static_cast<double>(flows_.planes.size());
   }
   this->add(std::move(sample));

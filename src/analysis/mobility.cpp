@@ -134,6 +134,7 @@ std::unique_ptr<Observer<D>> Mobility<D>::make(const ObserverEntry<D>& entry) {
   if (mobility.own_axes && !mobility.molecules.empty())
     config.fail("axes", "a molecule has no axes of its own: use \"space\", or name bodies in `of`");
   mobility.collective = config.boolean("collective", false);
+  mobility.incompressible = read_incompressible(entry);
   mobility.tolerance = read_frozen_tolerance(config);
   return std::make_unique<Mobility<D>>(std::move(settings), std::move(mobility), entry.scene);
 }
@@ -150,7 +151,8 @@ double Mobility<D>::solves() const {
   };
   for (const std::size_t k : mobility_.bodies) add(scene_.settings().bodies[k].bodies());
   for (const std::size_t k : mobility_.molecules) add(scene_.settings().molecules[k].molecules());
-  return solves / static_cast<double>(this->settings().every);
+  return (mobility_.incompressible ? 1.0 + solves_with_pressure * solves : solves) /
+         static_cast<double>(this->settings().every);
 }
 
 template <int D>
@@ -208,7 +210,7 @@ auto Mobility<D>::chosen(std::vector<Mover> movers, std::uint64_t step) const
 template <int D>
 double Mobility<D>::answer(const Step& step, const std::vector<Vec<D>>& force) const {
   return answer_to_force(step.particles, step.record, force, scene_.settings().zeta_0,
-                         mobility_.tolerance)
+                         mobility_.tolerance, step.pressure)
       .mobility;
 }
 
@@ -285,7 +287,9 @@ double Mobility<D>::to_one_force_on_all(const Step& step, const std::vector<Move
 template <int D>
 void Mobility<D>::measure(const Clock&, const Particles<D>& particles,
                           const StepRecord<D>& record) {
-  const Step step{particles, record};
+  const std::optional<FrozenPressure<D>> pressure =
+      pressure_on<D>(particles, record, scene_, mobility_.incompressible, mobility_.tolerance);
+  const Step step{particles, record, pressure ? &*pressure : nullptr};
   std::vector<double> sample;
   for (const std::vector<Mover>& all : movers(step)) {
     const Answers answers =

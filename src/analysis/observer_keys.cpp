@@ -125,6 +125,16 @@ void refuse_frozen(const ObserverEntry<D>& entry) {
                       "the integrator 'trapezoidal' or 'midpoint'");
 }
 
+template <int D>
+bool read_incompressible(const ObserverEntry<D>& entry) {
+  const bool wanted = entry.config.boolean("incompressible", true);
+  if (wanted && entry.scene.particles().free_count() == 0)
+    entry.config.fail(entry.config.has("incompressible") ? "incompressible" : "kind",
+                      "no particle is free, so that there is no fluid whose density a pressure "
+                      "could keep: set incompressible = false");
+  return wanted;
+}
+
 double read_frozen_tolerance(const Config& config) {
   const double tolerance = config.positive("tolerance", 0.01);
   if (tolerance >= 1.0) config.fail("tolerance", "must be less than 1");
@@ -143,6 +153,7 @@ void require_two_steps(const Config& config, double window, double dt) {
   template std::vector<int> read_directions<D>(const Config&, const std::vector<int>&); \
   template typename Grid<D>::Counts read_cells<D>(const ObserverEntry<D>&, double);     \
   template void refuse_frozen<D>(const ObserverEntry<D>&);                              \
+  template bool read_incompressible<D>(const ObserverEntry<D>&);                        \
   template double read_r_max<D>(const ObserverEntry<D>&);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)

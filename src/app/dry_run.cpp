@@ -99,8 +99,9 @@ double peak_bytes(const Simulation<D>& simulation, const Stage<D>& stage) {
     size.constituents += static_cast<double>(body.members.size());
   }
   double bytes = run_bytes<D>(size);
-  // Force, answer and what lies between: of one particle, seven vectors.
-  if (solves_of_observers(simulation) > 0.0) bytes += 7.0 * D * sizeof(double) * size.particles;
+  // Force, answer and what lies between: of one particle, seven vectors. Of one edge three: slips, tensions and forces by them.
+  if (solves_of_observers(simulation) > 0.0)
+    bytes += D * sizeof(double) * (7.0 * size.particles + 3.0 * size.edges);
   if (simulation.settings().solver.name != "pcg")
     bytes += static_cast<double>(stage.report.memory_bytes);
   if (simulation.integrator().solves() == 1) bytes -= static_cast<double>(stage.network.bytes());

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "frozen_steps.h"
 #include "odpd/analysis/high_frequency_viscosity.h"
 #include "odpd/analysis/mobility.h"
 #include "odpd/analysis/registry.h"
-#include "odpd/dynamics/integrator.h"
 #include "records.h"
 #include "support/dimensions.h"
 #include "support/errors.h"
@@ -21,127 +21,21 @@ using odpd::MobilitySettings;
 using odpd::Scene;
 using odpd::Vec;
 
-/// x with (A + sum n n^T) x = b, by elimination.
-std::vector<double> dense_solution(std::vector<std::vector<double>> A,
-                                   const std::vector<std::vector<double>>& nulls,
-                                   std::vector<double> b) {
-  const std::size_t n = b.size();
-  for (const auto& v : nulls)
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j) A[i][j] += v[i] * v[j];
-  for (std::size_t p = 0; p < n; ++p) {
-    std::size_t best = p;
-    for (std::size_t i = p; i < n; ++i)
-      if (std::abs(A[i][p]) > std::abs(A[best][p])) best = i;
-    std::swap(A[p], A[best]);
-    std::swap(b[p], b[best]);
-    for (std::size_t i = p + 1; i < n; ++i) {
-      const double factor = A[i][p] / A[p][p];
-      for (std::size_t j = p; j < n; ++j) A[i][j] -= factor * A[p][j];
-      b[i] -= factor * b[p];
-    }
-  }
-  for (std::size_t p = n; p-- > 0;) {
-    for (std::size_t j = p + 1; j < n; ++j) b[p] -= A[p][j] * b[j];
-    b[p] /= A[p][p];
-  }
-  return b;
-}
+using frozen_steps::body_of;
+using frozen_steps::OneStep;
+using frozen_steps::some_fluid;
 
+/// Of friction alone, measured at the same step several times.
 template <int D>
-odpd::SceneSettings<D> some_fluid() {
-  odpd::SceneSettings<D> s;
-  s.box.size = support::uniform_vec<D>(D == 2 ? 3.0 : 2.2);
-  s.box.periodic.fill(true);
-  s.count = D == 2 ? 30 : 34;
-  s.model = odpd::make_dpd<D>({.a = 5.0, .gamma = 3.0, .gamma_perp = 1.0, .cutoff = 1.0});
-  return s;
+odpd::Results measured(OneStep<D>& step, MobilitySettings settings, std::int64_t times = 1) {
+  settings.incompressible = false;
+  Mobility<D> mobility({.kind = "mobility", .name = "m"}, settings, step.scene);
+  for (std::int64_t t = 0; t < times; ++t) {
+    step.record.step = t;
+    mobility.measure(odpd::Clock{}, step.scene.particles(), step.record);
+  }
+  return records::results(mobility);
 }
-
-template <int D>
-odpd::BodySettings<D> body_of(const std::vector<Vec<D>>& frame, std::int64_t count) {
-  odpd::BodySettings<D> body;
-  body.shape = frame;
-  body.count = count;
-  body.clearance = 0.05;
-  return body;
-}
-
-/// A scene, one step of it, and its dense matrix.
-template <int D>
-struct OneStep {
-  explicit OneStep(const odpd::SceneSettings<D>& settings)
-      : scene(settings),
-        dynamics(scene.box(), scene.particles(), scene.model(), scene,
-                 odpd::make_solver({.name = "pcg", .tolerance = 1e-6}), {.seed = 3}),
-        integrator(odpd::make_integrator<D>("trapezoidal")),
-        record(integrator->step(dynamics, odpd::Clock{.dt = 0.005})) {
-    const auto n = index(dynamics.dofs().unknowns());
-    for (std::size_t k = 0; k < n; ++k) {
-      std::vector<double> q(n, 0.0);
-      q[k] = 1.0;
-      matrix.push_back(dynamics.friction(record.start, q));
-    }
-    // Momentum of each unknown: with no net one the motion is relative to the mean of all particles.
-    for (std::size_t c = 0; c < D; ++c)
-      nulls.push_back(of_forces([&](std::size_t) {
-        Vec<D> f{};
-        f.x[c] = 1.0;
-        return f;
-      }));
-    if (D == 2)  // the unused component of w
-      for (std::size_t b = 0; b < index(dynamics.dofs().bodies()); ++b) {
-        nulls.emplace_back(n, 0.0);
-        nulls.back()[D * b + 1] = 1.0;
-      }
-  }
-
-  /// P^T f of forces on particles.
-  template <class Force>
-  std::vector<double> of_forces(const Force& force) {
-    std::vector<Vec<D>> f;
-    for (std::size_t i = 0; i < record.start.position.size(); ++i) f.push_back(force(i));
-    std::vector<double> q;
-    dynamics.dofs().gather(record.start.arms, f, q);
-    return q;
-  }
-  /// f . A^+ f of a load on unknowns, its net force spread over all particles.
-  double answer(const std::vector<double>& f) {
-    std::vector<double> load = f;
-    const auto& translations = nulls;
-    const std::size_t bodies = index(dynamics.dofs().bodies());
-    const double n = static_cast<double>(record.start.position.size());
-    for (std::size_t c = 0; c < D; ++c) {
-      double net = 0.0;
-      for (std::size_t k = D * bodies + c; k < load.size(); k += D) net += f[k];
-      for (std::size_t k = 0; k < load.size(); ++k) load[k] -= net / n * translations[c][k];
-    }
-    const std::vector<double> v = dense_solution(matrix, nulls, load);
-    double sum = 0.0;
-    for (std::size_t k = 0; k < f.size(); ++k) sum += f[k] * v[k];
-    return sum;
-  }
-  /// That of a unit force (torque) along direction c on some bodies.
-  double of_bodies(const std::vector<std::size_t>& bodies, std::size_t c, bool turn) {
-    std::vector<double> f(matrix.size(), 0.0);
-    for (const std::size_t b : bodies) f[(turn ? b : dynamics.dofs().body_node(b)) * D + c] = 1.0;
-    return answer(f);
-  }
-  odpd::Results measured(const MobilitySettings& settings, std::int64_t times = 1) {
-    Mobility<D> mobility({.kind = "mobility", .name = "m"}, settings, scene);
-    for (std::int64_t t = 0; t < times; ++t) {
-      record.step = t;
-      mobility.measure(odpd::Clock{}, scene.particles(), record);
-    }
-    return records::results(mobility);
-  }
-
-  Scene<D> scene;
-  odpd::Dynamics<D> dynamics;
-  std::unique_ptr<odpd::Integrator<D>> integrator;
-  odpd::StepRecord<D> record;
-  std::vector<std::vector<double>> matrix, nulls;
-};
 
 template <class T>
 class MobilityTest : public ::testing::Test {};
@@ -167,8 +61,8 @@ TYPED_TEST(MobilityTest, OfBodiesIsThatOfTheDenseMatrix) {
   EXPECT_GT(std::abs(collective / translation - 1.0), 0.05);
   for (const double tolerance : {1e-10, 0.1}) {
     SCOPED_TRACE(tolerance);
-    const auto results =
-        step.measured({.bodies = {0}, .molecules = {}, .collective = true, .tolerance = tolerance});
+    const auto results = measured<D>(
+        step, {.bodies = {0}, .molecules = {}, .collective = true, .tolerance = tolerance});
     const double bound = tolerance < 0.01 ? 1e-8 : 0.02;
     EXPECT_NEAR(records::mean(results, "m.body.translation"), translation, bound * translation);
     EXPECT_NEAR(records::mean(results, "m.body.translation.y"), component[1], bound * component[1]);
@@ -177,7 +71,8 @@ TYPED_TEST(MobilityTest, OfBodiesIsThatOfTheDenseMatrix) {
   }
   for (const bool random : {false, true}) {
     SCOPED_TRACE(random);
-    const auto results = step.measured(
+    const auto results = measured<D>(
+        step,
         {.bodies = {0}, .molecules = {}, .sample = 1, .random_loads = random, .tolerance = 1e-4},
         256);
     for (const auto& [name, exact] :
@@ -233,7 +128,7 @@ TYPED_TEST(MobilityTest, OfMoleculesIsThatOfTheDenseMatrix) {
   }
   const double rotation =
       mean_of(D - 1, [&](std::size_t c, double sign) { return sign / norm(r) * across[c]; });
-  const auto results = step.measured({.bodies = {}, .molecules = {0}, .tolerance = 1e-10});
+  const auto results = measured<D>(step, {.bodies = {}, .molecules = {0}, .tolerance = 1e-10});
   EXPECT_NEAR(records::mean(results, "m.dimer.translation"), translation, 1e-8 * translation);
   EXPECT_NEAR(records::mean(results, "m.dimer.rotation"), rotation, 1e-8 * rotation);
 }
@@ -246,9 +141,9 @@ TEST(MobilityOfARod, HasItsOwnAxes) {
   const Vec<3> line = step.scene.particles().bodies[0].pose.orientation.turn({{1.0, 0.0, 0.0}});
   ASSERT_LT(std::abs(line[0]), 0.95);
   MobilitySettings wanted{.bodies = {0}, .molecules = {}, .tolerance = 1e-10};
-  const auto space = step.measured(wanted);
+  const auto space = measured<3>(step, wanted);
   wanted.own_axes = true;
-  const auto own = step.measured(wanted);
+  const auto own = measured<3>(step, wanted);
   const auto mean = [](const odpd::Results& results, const std::string& name) {
     return records::mean(results, "m.body." + name);
   };
@@ -289,8 +184,9 @@ odpd::SceneSettings<D> ring() {
 
 template <int D>
 odpd::Results flown(OneStep<D>& step) {
-  HighFrequencyViscosity<D> eta({.kind = "high-frequency-viscosity", .name = "h"},
-                                {.planes = {{0, 1}, {1, 0}}, .tolerance = 1e-10}, step.scene);
+  HighFrequencyViscosity<D> eta(
+      {.kind = "high-frequency-viscosity", .name = "h"},
+      {.planes = {{0, 1}, {1, 0}}, .incompressible = false, .tolerance = 1e-10}, step.scene);
   eta.measure(odpd::Clock{}, step.scene.particles(), step.record);
   return records::results(eta);
 }
@@ -365,6 +261,11 @@ TEST(FrozenAnswers, RefuseWhatTheyCannotTell) {
   refused(held, mobility, {"kind", "free [[body]]"});
   refused(held, viscosity, {"kind", "held"});
   refused(dragged, viscosity, {"kind", "zeta_0"});
+  auto dry = s;
+  dry.count = 0;
+  refused(dry, mobility, {"kind", "no particle is free", "incompressible = false"});
+  refused(dry, mobility + "incompressible = true\n",
+          {"case.toml:3", "incompressible", "no particle is free"});
   refused(s, mobility + "of = [\"ball\"]\n", {"case.toml:3", "of", "'ball'", "body"});
   refused(s, mobility + "of = []\n", {"of", "at least one"});
   refused(s, mobility + "loads = \"random\"\nsample = 2\n", {"case.toml:4", "sample", "unit"});
@@ -382,7 +283,7 @@ TEST(FrozenAnswers, RefuseWhatTheyCannotTell) {
   refused(s, mobility + "axes = \"body\"\n", {"axes", "molecule", "of"});
 }
 
-// A solve for each load; a sample of the bodies is no more than there are.
+// A solve for each load, with a pressure one for the configuration and some for each load; a sample of the bodies is no more than there are.
 TEST(FrozenAnswers, TellTheirSolves) {
   auto s = some_fluid<2>();
   s.bodies = {body_of<2>(support::simplex_body<2>().frame, 2)};
@@ -394,11 +295,16 @@ TEST(FrozenAnswers, TellTheirSolves) {
         .front()
         ->solves();
   };
-  const std::string mobility = "kind = \"mobility\"\nevery = 10\n";
+  const std::string plain = "every = 10\nincompressible = false\n",
+                    mobility = "kind = \"mobility\"\n" + plain,
+                    viscosity = "kind = \"high-frequency-viscosity\"\n";
   EXPECT_DOUBLE_EQ(solves(mobility), 0.6);
   EXPECT_DOUBLE_EQ(solves(mobility + "sample = 1\ncollective = true\n"), 0.5);
   EXPECT_DOUBLE_EQ(solves(mobility + "loads = \"random\"\n"), 0.2);
-  EXPECT_DOUBLE_EQ(solves("kind = \"high-frequency-viscosity\"\nevery = 10\n"), 0.1);
+  EXPECT_DOUBLE_EQ(solves(viscosity + plain), 0.1);
+  EXPECT_DOUBLE_EQ(solves("kind = \"mobility\"\nevery = 10\n"),
+                   0.1 + 0.6 * odpd::solves_with_pressure);
+  EXPECT_DOUBLE_EQ(solves(viscosity + "every = 10\n"), 0.1 + 0.1 * odpd::solves_with_pressure);
 }
 
 }  // namespace

@@ -185,6 +185,26 @@ control = true
 control_every = 2
 control_tolerance = 1e-9
 )"},
+                                         {"frozen", R"(
+[[body]]
+name = "ring"
+shape = "ring"
+radius = 0.3
+points_on_ring = 6
+count = 2
+[integrator]
+dt = 0.005
+[[observe]]
+kind = "mobility"
+every = 8
+sample = 1
+collective = true
+tolerance = 1e-9
+[[observe]]
+kind = "high-frequency-viscosity"
+every = 8
+tolerance = 1e-9
+)"},
                                          {"implicit", R"(
 [integrator]
 name = "implicit"

@@ -18,6 +18,7 @@
 #include <array>
 #include <vector>
 
+#include "odpd/analysis/frozen_pressure.h"
 #include "odpd/dynamics/step_record.h"
 #include "odpd/particles/particles.h"
 
@@ -33,7 +34,8 @@ struct ForceAnswer {
 /// One solve to this tolerance (0: that of the run). Throws SolverError.
 template <int D>
 ForceAnswer<D> answer_to_force(const Particles<D>& particles, const StepRecord<D>& record,
-                               const std::vector<Vec<D>>& force, double zeta_0, double tolerance);
+                               const std::vector<Vec<D>>& force, double zeta_0, double tolerance,
+                               const FrozenPressure<D>* pressure = nullptr);
 
 /// E: component c of the slip is E[c] . r.
 template <int D>
@@ -56,6 +58,7 @@ struct FlowAnswer {
 /// Likewise. Bodies are carried with their centres (analysis/force_points.h). There is no drag, and no known velocity.
 template <int D>
 FlowAnswer answer_to_flow(const Particles<D>& particles, const StepRecord<D>& record,
-                          const Gradient<D>& E, double tolerance);
+                          const Gradient<D>& E, double tolerance,
+                          const FrozenPressure<D>* pressure = nullptr);
 
 }  // namespace odpd

@@ -18,7 +18,8 @@ struct FlowPlane {
 
 struct HighFrequencySettings {
   std::vector<FlowPlane> planes;
-  double tolerance = 0.01;  ///< of the solves, relative
+  bool incompressible = true;  ///< with a pressure (analysis/frozen_pressure.h)
+  double tolerance = 0.01;     ///< of the solves, relative
 };
 
 template <int D>

@@ -16,6 +16,7 @@
 // relative to the mean of all: that of a periodic box without net flow. Beads of a molecule give way to the load each by itself, as
 // springs take time: it is the mobility before they do, above that of a rigid body of the same beads. The fluid has had no time either to
 // answer by a pressure, so that it is not that of Stokes flow (analysis/frozen.h).
+#include "odpd/analysis/frozen_pressure.h"
 #include "odpd/analysis/molecule_beads.h"
 #include "odpd/analysis/observer.h"
 #include "odpd/core/random.h"
@@ -29,7 +30,8 @@ struct MobilitySettings {
   bool random_loads = false;  ///< on all at once
   bool own_axes = false;      ///< directions are those of the body's shape, turned with it
   bool collective = false;
-  double tolerance = 0.01;  ///< of the solves, relative
+  bool incompressible = true;  ///< with a pressure (analysis/frozen_pressure.h)
+  double tolerance = 0.01;     ///< of the solves, relative
 };
 
 template <int D>
@@ -57,6 +59,7 @@ class Mobility : public Observer<D> {
   struct Step {
     const Particles<D>& particles;
     const StepRecord<D>& record;
+    const FrozenPressure<D>* pressure;
   };
   std::vector<std::vector<Mover>> movers(const Step& step) const;
   std::vector<Mover> chosen(std::vector<Mover> movers, std::uint64_t step) const;

@@ -48,6 +48,9 @@ std::string control_with_bonds(const std::string& observer);
 /// Refuses runs that cannot ask what the configuration of a step's start answers to a load (analysis/frozen.h).
 template <int D>
 void refuse_frozen(const ObserverEntry<D>& entry);
+/// `incompressible`: with a pressure (analysis/frozen_pressure.h). Refuses it where no particle is free, so that nothing has a density.
+template <int D>
+bool read_incompressible(const ObserverEntry<D>& entry);
 /// `tolerance` of such solves, relative.
 double read_frozen_tolerance(const Config& config);
 
