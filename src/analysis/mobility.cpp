@@ -68,6 +68,28 @@ bool load_by_torque(std::span<const std::int32_t> particles, std::span<const Vec
 
 double sign(double uniform) { return uniform < 0.5 ? -1.0 : 1.0; }
 
+// Of each [[body]], how much of a force on all its sites take, with 1 for a particle of the fluid. Empty where no volume is given,
+// or something holds the fluid.
+template <int D>
+std::vector<double> weights_of_sites(const Scene<D>& scene) {
+  const SceneSettings<D>& s = scene.settings();
+  double sites = 0.0, excluded = 0.0;
+  for (const BodySettings<D>& b : s.bodies) {
+    if (b.excluded_volume <= 0.0) continue;
+    sites += static_cast<double>(b.particles());
+    excluded += static_cast<double>(b.bodies()) * b.excluded_volume;
+  }
+  if (excluded == 0.0 || !scene.conserves_momentum()) return {};
+  const double n =
+      (static_cast<double>(scene.particles().size()) - sites) / (s.fluid_volume() - excluded);
+  std::vector<double> weights;
+  for (const BodySettings<D>& b : s.bodies)
+    weights.push_back(b.excluded_volume > 0.0
+                          ? n * b.excluded_volume / static_cast<double>(b.shape.size())
+                          : 1.0);
+  return weights;
+}
+
 }  // namespace
 
 template <int D>
@@ -75,6 +97,7 @@ Mobility<D>::Mobility(ObserverSettings settings, MobilitySettings mobility, cons
     : Observer<D>(std::move(settings), mobility_columns(mobility, scene)),
       mobility_(std::move(mobility)),
       scene_(scene),
+      site_weight_(weights_of_sites(scene)),
       beads_(scene),
       random_(scene.settings().seed, Stream::loads) {}
 
@@ -208,7 +231,28 @@ auto Mobility<D>::chosen(std::vector<Mover> movers, std::uint64_t step) const
 }
 
 template <int D>
-double Mobility<D>::answer(const Step& step, const std::vector<Vec<D>>& force) const {
+std::vector<double> Mobility<D>::weights(const Particles<D>& particles) const {
+  std::vector<double> weight(particles.size(), 1.0);
+  for (std::size_t i = 0; i < weight.size(); ++i)
+    if (const std::int32_t b = particles.body_of(i); b >= 0)
+      weight[i] = site_weight_[scene_.body_kind(index(b))];
+  return weight;
+}
+
+template <int D>
+double Mobility<D>::answer(const Step& step, std::vector<Vec<D>> force) const {
+  if (!site_weight_.empty()) {
+    const std::vector<double> weight = weights(step.particles);
+    const Share own = step.particles.owned();
+    std::array<double, D + 1> sums{};
+    for (auto i = index(own.first); i < index(own.end(std::ssize(force))); ++i) {
+      for (int c = 0; c < D; ++c) sums[index(c)] += force[i][c];
+      sums[D] += weight[i];
+    }
+    step.particles.ranks().sum(std::span(sums));
+    for (std::size_t i = 0; i < force.size(); ++i)
+      for (int c = 0; c < D; ++c) force[i][c] -= weight[i] * sums[index(c)] / sums[D];
+  }
   return answer_to_force(step.particles, step.record, force, scene_.settings().zeta_0,
                          mobility_.tolerance, step.pressure)
       .mobility;

@@ -85,6 +85,41 @@ TYPED_TEST(MobilityTest, OfBodiesIsThatOfTheDenseMatrix) {
   }
 }
 
+// Bodies of known volume v take of the opposite force as much as the fluid in their place, n v = v (N - 2 p)/(V - 2 v), instead of as many
+// as their particles p. On all of them alike the forces on bodies and on the fluid are those of before but for a factor.
+TYPED_TEST(MobilityTest, OppositeForceGoesByVolumeWhereItIsKnown) {
+  constexpr int D = TypeParam::D;
+  auto settings = some_fluid<D>();
+  settings.bodies = {body_of<D>(support::simplex_body<D>().frame, 2)};
+  const MobilitySettings wanted{
+      .bodies = {0}, .molecules = {}, .collective = true, .tolerance = 1e-10};
+  OneStep<D> step(settings);
+  const auto by_particles = measured<D>(step, wanted);
+  const auto p = static_cast<double>(settings.bodies[0].shape.size());
+  const auto fluid = static_cast<double>(settings.count);
+  const double volume = settings.box.volume(), excluded = 0.1 * volume;
+  settings.bodies[0].excluded_volume = excluded;
+  OneStep<D> known(settings);
+  const auto by_volume = measured<D>(known, wanted);
+  const double factor = (1.0 - 2.0 * excluded / volume) / (1.0 - 2.0 * p / (fluid + 2.0 * p));
+  EXPECT_GT(std::abs(factor - 1.0), 0.01);
+  const double collective = records::mean(by_particles, "m.body.collective") * factor * factor;
+  EXPECT_NEAR(records::mean(by_volume, "m.body.collective"), collective, 1e-8 * collective);
+
+  const double all = fluid / (1.0 - 2.0 * excluded / volume);  // as fluid of the whole box
+  double translation = 0.0;
+  for (std::size_t c = 0; c < D; ++c)
+    for (const std::int32_t body : {0, 1})
+      translation += known.answer(known.of_forces([&](std::size_t i) {
+        const std::int32_t b = known.scene.particles().body_of(i);
+        Vec<D> f{};
+        f.x[c] = (b == body ? 1.0 / p : 0.0) - (b < 0 ? 1.0 : excluded / volume * all / p) / all;
+        return f;
+      }));
+  EXPECT_NEAR(records::mean(by_volume, "m.body.translation"), translation / (2.0 * D),
+              1e-8 * translation);
+}
+
 // A dimer across a corner of the box: forces of half each on its beads, and opposite ones across its line.
 TYPED_TEST(MobilityTest, OfMoleculesIsThatOfTheDenseMatrix) {
   constexpr int D = TypeParam::D;

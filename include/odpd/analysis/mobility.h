@@ -12,10 +12,11 @@
 // so that z . mu z is N times the mean over all of them but for its spread (Hutchinson 1990), with a solve for translation and one
 // for rotation: worth it where they feel little of each other, as rotations do.
 //
-// Where nothing takes up a force (no wall, no held body, no drag) the opposite one is spread over all particles, and velocities are
-// relative to the mean of all: that of a periodic box without net flow. Beads of a molecule give way to the load each by itself, as
-// springs take time: it is the mobility before they do, above that of a rigid body of the same beads. The fluid has had no time either to
-// answer by a pressure, so that it is not that of Stokes flow (analysis/frozen.h).
+// Where nothing takes up a force (no wall, no held body, no drag) the opposite one is spread over the box, and velocities are relative
+// to the mean over it: that of a periodic box without net flow. Free particles share in it alike, the sites of a body as the fluid in
+// its place would where the `excluded_volume` of its [[body]] is given, n v_ex of them by n fluid particles per volume between bodies,
+// else like other particles. With the volume it is the uniform pressure gradient of Hasimoto 1959. Beads of a molecule give way to the
+// load each by itself, as springs take time: it is the mobility before they do, above that of a rigid body of the same beads.
 #include "odpd/analysis/frozen_pressure.h"
 #include "odpd/analysis/molecule_beads.h"
 #include "odpd/analysis/observer.h"
@@ -63,14 +64,17 @@ class Mobility : public Observer<D> {
   };
   std::vector<std::vector<Mover>> movers(const Step& step) const;
   std::vector<Mover> chosen(std::vector<Mover> movers, std::uint64_t step) const;
+  /// How much of the opposite force each particle takes, with 1 for those of the fluid.
+  std::vector<double> weights(const Particles<D>& particles) const;
   /// f . R^-1 f of a force on each particle.
-  double answer(const Step& step, const std::vector<Vec<D>>& force) const;
+  double answer(const Step& step, std::vector<Vec<D>> force) const;
   Answers to_unit_loads(const Step& step, const std::vector<Mover>& movers) const;
   Answers to_random_loads(const Step& step, const std::vector<Mover>& movers) const;
   double to_one_force_on_all(const Step& step, const std::vector<Mover>& movers) const;
 
   MobilitySettings mobility_;
   const Scene<D>& scene_;
+  std::vector<double> site_weight_;  // of each [[body]]; empty: all particles share alike
   MoleculeBeads<D> beads_;
   CounterRandom random_;
 };

@@ -10,9 +10,9 @@
 // pressure gradient F/V. A torque T has no such counterpart: in Fourier space its flow is what it is without images, less the term k = 0,
 // and that is a rotation by -c of its own (symmetry leaves no strain; the next term goes as c^(10/3)).
 //
-// The observer `mobility` spreads the opposite force over all particles, the body's p too, and takes velocities relative to the mean of
-// all N. With n the density of the fluid far away, a uniform force f on each of its N - p particles is a pressure gradient n f, and the same
-// holds of velocities by reciprocity. So
+// Where no `excluded_volume` is given the observer `mobility` spreads the opposite force over all particles, the body's p too, and
+// takes velocities relative to the mean of all N. With n the density of the fluid far away, a uniform force f on each of its N - p
+// particles is a pressure gradient n f, and the same holds of velocities by reciprocity. So
 //
 //   U/F = mobility (N/(n V))^2
 //
