@@ -115,7 +115,7 @@ ConfigError no_room(const std::vector<BodySettings<D>>& settings, double space,
   }
   return ConfigError(fmt::format(
       "[[body]] {}: no random places were found for all {} bodies. With half its clearance around "
-      "each, as {} of {}{:.6g} across, they would fill {:.3g} of the {}, {}: {}",
+      "each, as {} of {}{:.4g} across, they would fill {:.3g} of the {}, {}: {}",
       fmt::join(names, ", "), bodies, D > 2 ? "balls" : "disks", names.size() > 1 ? "up to " : "",
       across, fraction, D > 2 ? "volume" : "area", reached, remedy));
 }
