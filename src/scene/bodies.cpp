@@ -89,8 +89,8 @@ template <int D>
 ConfigError no_room(const std::vector<BodySettings<D>>& settings, double space,
                     const std::optional<RandomPlaces<D>>& found) {
   constexpr const char* remedy =
-      "lower count, fraction or clearance, give positions (of long bodies with `along`, as their "
-      "balls are mostly empty), or use a larger box";
+      "lower count, fraction or clearance, give positions (of long bodies with `along`), or use a "
+      "larger box";
   std::vector<std::string> names;
   std::int64_t bodies = 0;
   double across = 0.0;

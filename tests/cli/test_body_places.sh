@@ -68,7 +68,7 @@ expect_exit 0 "$odpd" run crowd --threads 2 --out crowd-2
 have_python && expect "$python" "$source_root/tests/cli/same_run.py" crowd-1 crowd-2
 # .95 and more than all there is.
 crowd 336
-expect_error 1 "$odpd" run crowd -- "[[body]] 'disk'" 'all 336 bodies' '0.95 of the area' 'and 0.8' 'was reached' 'about 2' 'lower count or clearance'
+expect_error 1 "$odpd" run crowd -- "[[body]] 'disk'" 'all 336 bodies' '0.95 of the area' 'and 0.8' 'was reached' 'about 2' 'lower count, fraction or clearance'
 crowd 1000
 expect_error 1 "$odpd" run crowd -- "[[body]] 'disk'" '2.83 of the area, more than there is' 'larger box'
 
