@@ -14,7 +14,7 @@ namespace {
 using odpd::BodyInCell;
 using odpd::Measured;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Drag over Stokes' on spheres in a simple cubic lattice, at volume fractions c: Zick & Homsy 1982, table 2.
 TEST(HydrodynamicRadius, DragOfSpheresInACubicLattice) {
@@ -78,7 +78,7 @@ TEST(HydrodynamicRadius, MobilitiesAreSumsOverModes) {
                                        return std::pow(std::cyl_bessel_j(1.0, k * a) / (k * a), 2);
                                      }) +
                       1.0 / (4.0 * pi * pi * std::pow(a, 3) * 200.0 * 2.0 * pi);
-  EXPECT_NEAR(odpd::radius_of_rotation(2, disk, edge) / a, 1.0, 5e-4);
+  EXPECT_NEAR(odpd::radius_of_rotation(2, disk, edge) / a, 1.0, 1.5e-3);
 }
 
 TEST(HydrodynamicRadius, SeriesAreInverted) {

@@ -1,0 +1,72 @@
+// The scenes of odpd calibrate --radius: what they take from a case, and what they measure of bodies of which the answer is known.
+#include <gtest/gtest.h>
+
+#include "odpd/app/radius_run.h"
+#include "odpd/app/simulation.h"
+#include "odpd/core/error.h"
+
+namespace {
+
+using odpd::BodyInCell;
+using odpd::MeasuredBody;
+
+MeasuredBody body_of(const std::string& text, const std::string& name = "") {
+  const odpd::Config config = odpd::Config::from_text(text, "test");
+  const odpd::Simulation<2> simulation(config, odpd::read_case(config, "test"));
+  return odpd::measured_body(config, simulation.scene(), simulation.clock().dt, name);
+}
+
+std::string case_with(const std::string& fluid, const std::string& rest) {
+  return "dimension = 2\nseed = 3\n[box]\nsize = [12.0, 12.0]\nperiodic = [true, "
+         "true]\n[fluid]\nkT = "
+         "1.0\n" +
+         fluid + "[integrator]\ndt = 0.01\n[run]\nduration = 1.0\n" + rest;
+}
+
+const std::string dimer =
+    "[[body]]\nname = \"dimer\"\nshape = \"points\"\ncount = 2\nforce = [1.0, 0.0]\n"
+    "points = [{ at = [0.0, 0.0] }, { at = [1.5, 0.0] }]\n";
+
+// Two particles of the fluid itself, too far apart to meet, are two of N more: they take 2/n.
+TEST(RadiusRun, ParticlesOfTheFluidExcludeTheirShare) {
+  const MeasuredBody m = body_of(case_with("density = 4.0\na = 18.5\ngamma = 4.5\n", dimer));
+  const BodyInCell cell = odpd::measure_body(
+      m, 5.0, 0.5, 1, [](const BodyInCell& c) { return odpd::excluded_volume(c).error < 0.1; },
+      [] { return false; });
+  EXPECT_EQ(cell.sites, 2);
+  EXPECT_EQ(cell.particles, 100);  // 4 (25 - .5) and two
+  EXPECT_NEAR(odpd::excluded_volume(cell).value, 0.5, 3.5 * 0.1);
+}
+
+TEST(RadiusRun, TakesFluidAndBodyOfACase) {
+  const std::string disks =
+      "[[species]]\nname = \"solvent\"\n[[species]]\nname = \"disk\"\ncount = 0\n"
+      "[[pair]]\nspecies = [\"solvent\", \"disk\"]\na = 10.0\n"
+      "[[body]]\nname = \"disk\"\nspecies = \"disk\"\nshape = \"disk\"\nradius = 1.0\nrings = 2\n"
+      "count = 2\nexcluded_volume = 5.0\n" +
+      dimer;
+  // By its count, of physical inputs that go by the density.
+  const std::string text = case_with("count = 432\na = 18.5\neta = 2.0\n", disks);
+  const MeasuredBody m = body_of(text, "disk");
+  EXPECT_DOUBLE_EQ(m.density, 3.0);
+  EXPECT_EQ(m.sites, 19);
+  EXPECT_NEAR(m.reach, 1.0, 1e-12);
+  EXPECT_TRUE(m.round);
+  EXPECT_FALSE(body_of(text, "dimer").round);
+  EXPECT_EQ(m.fluid.find("eta"), std::string::npos);
+  EXPECT_NE(m.fluid.find("gamma = "), std::string::npos);
+  EXPECT_NE(m.species.find("a = 10"), std::string::npos);
+  EXPECT_EQ(m.body.find("excluded_volume"), std::string::npos);
+  EXPECT_EQ(m.default_edges(), (std::vector<double>{6.0, 9.0, 12.0}));
+  EXPECT_DOUBLE_EQ(m.far(6.0), 2.5);
+  EXPECT_DOUBLE_EQ(m.far(4.4), 2.2);
+  // The scene made of them is the one asked for.
+  std::int64_t looked = 0;
+  const BodyInCell cell = odpd::measure_body(
+      m, 6.0, 4.0, 1, [&](const BodyInCell&) { return ++looked == 2; }, [] { return false; });
+  EXPECT_EQ(cell.samples, 2);
+  EXPECT_EQ(cell.particles, 3 * (36 - 4) + 19);
+  EXPECT_THROW(body_of(text), odpd::ConfigError);
+}
+
+}  // namespace
