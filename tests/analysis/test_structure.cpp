@@ -42,7 +42,7 @@ TYPED_TEST(StructureTest, AnIdealGasHasNoStructure) {
   s.species = {{.name = "a", .fraction = 0.5}, {.name = "b", .fraction = 0.5}};
   s.model = odpd::make_dpd<D>({}, 2);
   const Scene<D> scene(s);
-  Rdf<D> rdf({.kind = "rdf", .name = "g"}, 2.0, bins, scene);
+  Rdf<D> rdf({.kind = "rdf", .name = "g"}, {.r_max = 2.0, .bins = bins}, scene);
   StepRecord<D> record;
   record.start.box = scene.box();
   for (std::size_t t = 0; t < samples; ++t) {
@@ -84,7 +84,7 @@ TYPED_TEST(StructureTest, AnIdealGasBetweenWalls) {
   auto s = records::periodic<D>(6.0, support::random_points<D>(low, high, n, 0));
   records::add_walls(s, 0.0);
   const Scene<D> scene(s);
-  Rdf<D> rdf({.kind = "rdf", .name = "g"}, 2.0, bins, scene);
+  Rdf<D> rdf({.kind = "rdf", .name = "g"}, {.r_max = 2.0, .bins = bins}, scene);
   StepRecord<D> record = records::record(scene);
   for (std::size_t t = 0; t < samples; ++t) {
     const auto fluid = support::random_points<D>(low, high, n, 1000 + t);
@@ -109,12 +109,52 @@ TYPED_TEST(StructureTest, OnePairFillsOneBin) {
   std::vector<Vec<D>> r(2, support::uniform_vec<D>(0.1));
   r[1][0] = 3.0;  // 1.1 away through the border
   const Scene<D> scene(records::periodic<D>(4.0, r));
-  Rdf<D> rdf({.kind = "rdf", .name = "g"}, 2.0, 5, scene);
+  Rdf<D> rdf({.kind = "rdf", .name = "g"}, {.r_max = 2.0, .bins = 5}, scene);
   rdf.measure(Clock{}, scene.particles(), records::record(scene));
   const auto row = rdf.series_row();
   for (std::size_t k = 0; k < 5; ++k) {
     const double shell = ball<D>(1.2) - ball<D>(0.8);
     EXPECT_NEAR(row[k], k == 2 ? std::pow(4.0, D) / shell : 0.0, 1e-10);
+  }
+}
+
+// Centres, 1.1 apart through the border, of dimers of two kinds, the other way round, in a fluid that does not count.
+TYPED_TEST(StructureTest, CentresOfBodies) {
+  constexpr int D = TypeParam::D;
+  const Vec<D> size = support::uniform_vec<D>(4.0);
+  auto s = records::periodic<D>(4.0, support::random_points<D>(Vec<D>{}, size, 40, 0));
+  Vec<D> half{}, at = support::uniform_vec<D>(0.1);
+  half[0] = 0.3;
+  odpd::BodySettings<D> dimer;
+  dimer.shape = {half, -1.0 * half};
+  dimer.name = "a";
+  dimer.positions = {at};
+  at[0] = 3.0;
+  dimer.positions.push_back(at);
+  s.bodies.push_back(dimer);
+  dimer.name = "b";
+  dimer.shape = {-1.0 * half, half};
+  at[1] += 1.5;
+  dimer.positions = {at};
+  s.bodies.push_back(dimer);
+  const Scene<D> scene(s);
+  Rdf<D> rdf({.kind = "rdf", .name = "g"}, {.r_max = 2.0, .bins = 5, .of_bodies = true}, scene);
+  StepRecord<D> record = records::record(scene);
+  record.start.arms.resize(record.start.position.size());
+  for (const auto& body : scene.particles().bodies)
+    for (const std::int64_t id : body.members)
+      record.start.arms[static_cast<std::size_t>(id)] = scene.box().separation(
+          scene.particles().position[static_cast<std::size_t>(id)], body.pose.centre);
+  rdf.measure(Clock{}, scene.particles(), record);
+  EXPECT_EQ(rdf.series_columns().at(5), "g_a_b_0");
+  const auto row = rdf.series_row();
+  const auto shell = [](double k) { return ball<D>(0.4 * (k + 1.0)) - ball<D>(0.4 * k); };
+  for (std::size_t k = 0; k < 5; ++k) {
+    EXPECT_NEAR(row[k], k == 2 ? std::pow(4.0, D) / shell(2.0) : 0.0, 1e-10) << "a - a " << k;
+    EXPECT_NEAR(row[5 + k], k >= 3 ? std::pow(4.0, D) / (2.0 * shell(static_cast<double>(k))) : 0.0,
+                1e-10)
+        << "a - b " << k;
+    EXPECT_TRUE(std::isnan(row[10 + k])) << "there is one b";
   }
 }
 
@@ -128,8 +168,8 @@ TEST(Rdf, CountsTheParticlesItIsGiven) {
   others.start_species.assign(40, 0);
   std::fill_n(others.start_species.begin(), 5, 1);
   const Scene<2> scene(s), other(others);
-  Rdf<2> rdf({.kind = "rdf", .name = "g"}, 2.0, 10, scene);
-  Rdf<2> at_home({.kind = "rdf", .name = "g"}, 2.0, 10, other);
+  Rdf<2> rdf({.kind = "rdf", .name = "g"}, {.r_max = 2.0, .bins = 10}, scene);
+  Rdf<2> at_home({.kind = "rdf", .name = "g"}, {.r_max = 2.0, .bins = 10}, other);
   rdf.measure(Clock{}, other.particles(), records::record(other));
   at_home.measure(Clock{}, other.particles(), records::record(other));
   EXPECT_EQ(rdf.series_row(), at_home.series_row());

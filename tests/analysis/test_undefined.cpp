@@ -34,8 +34,11 @@ bool noted(const Results& results, const std::string& text) {
 
 TEST(Undefined, PairsOfAnEmptySpecies) {
   const Scene<2> scene = three_species();
-  odpd::Rdf<2> rdf({.kind = "rdf", .name = "g"}, 2.0, 10, scene,
-                   odpd::RdfComparison{.value = 1.0, .from = 0.0, .to = 2.0});
+  odpd::Rdf<2> rdf({.kind = "rdf", .name = "g"},
+                   {.r_max = 2.0,
+                    .bins = 10,
+                    .comparison = odpd::RdfComparison{.value = 1.0, .from = 0.0, .to = 2.0}},
+                   scene);
   EXPECT_TRUE(std::isnan(records::mean(records::results(rdf), "g.rms_deviation"))) << "nothing yet";
   for (int k = 0; k < 40; ++k) rdf.measure(Clock{}, scene.particles(), records::record(scene));
   const Results results = records::results(rdf);

@@ -3,7 +3,7 @@
 //
 //   g_AB(r) = V <pairs AB with distance in the bin> / (pairs of particles AB in all * volume of the shell)
 //
-// with N(N-1)/2 pairs for A = B, so that an ideal gas has g = 1 at any N; undefined (NaN, and a note) where there is no such pair.
+// or, asked for, of the centres of bodies, per pair of [[body]]. With N(N-1)/2 pairs for A = B, so that an ideal gas has g = 1 at any N; undefined (NaN, and a note) where there is no such pair.
 // Distances up to half the shortest periodic edge. Between walls V is the volume between their surfaces, and shells count in full
 // also where a wall cuts them: an ideal gas between walls H apart has not 1 but 1 - r/(2 H) in 3D, 1 - 2 r/(pi H) in 2D (r < H).
 // Where g has a value to be compared with (1 in an ideal gas), over the bins whose middle lies between two distances:
@@ -22,11 +22,17 @@ struct RdfComparison {
   double from = 0.0, to = 0.0;  ///< distances (length)
 };
 
+struct RdfSettings {
+  double r_max = 2.0;  ///< largest distance (length)
+  std::int64_t bins = 100;
+  std::optional<RdfComparison> comparison{};
+  bool of_bodies = false;  ///< of centres of bodies in place of free particles
+};
+
 template <int D>
 class Rdf : public Observer<D> {
  public:
-  Rdf(ObserverSettings settings, double r_max, std::int64_t bins, const Scene<D>& scene,
-      std::optional<RdfComparison> comparison = {});
+  Rdf(ObserverSettings settings, RdfSettings rdf, const Scene<D>& scene);
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);
   void measure(const Clock& clock, const Particles<D>& particles,
                const StepRecord<D>& record) override;
@@ -34,19 +40,24 @@ class Rdf : public Observer<D> {
   std::vector<std::string> series_columns() const override;
 
  private:
+  struct Points {
+    std::vector<Vec<D>> place;
+    std::vector<std::int32_t> kind;                 // species or [[body]]; -1: does not count
+    std::int64_t counted_from = 0, counted_to = 0;  // by this rank
+  };
+  Points points(const Particles<D>& particles, const Stage<D>& stage) const;
   std::size_t pair_index(std::int32_t a, std::int32_t b) const;
-  /// Per column: turns pair counts of these particles into g.
-  std::vector<double> factors(const Particles<D>& particles) const;
+  /// Per column: turns pair counts of these points into g.
+  std::vector<double> factors(const Points& points, const Communicator& ranks) const;
   double middle(std::size_t bin) const {
-    return r_max_ / static_cast<double>(bins_) * (static_cast<double>(bin) + 0.5);
+    return rdf_.r_max / static_cast<double>(bins_) * (static_cast<double>(bin) + 0.5);
   }
   void add_deviations(Results& results) const;
 
-  double r_max_;
+  RdfSettings rdf_;
   std::size_t bins_;
   const Scene<D>& scene_;
-  std::size_t species_;
-  std::optional<RdfComparison> comparison_;
+  std::vector<std::string> names_;  // of each kind of point
 };
 
 }  // namespace odpd
