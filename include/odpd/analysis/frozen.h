@@ -15,6 +15,8 @@
 // the density need a time of some eta/K, K the bulk modulus, to make Stokes flow of it. For rigid inclusions elasticity then says:
 //   spheres: drag 5.14 pi eta a in place of 6 pi eta a; eta (1 + 2.05 phi) in place of 1 + 2.5 phi; torque 8 pi eta a^3 as it is
 //   disks:   eta (1 + 1.5 phi) in place of 1 + 2 phi; mobility some 4/3 times as large
+// A FrozenPressure (analysis/frozen_pressure.h) makes Stokes flow of it without that time; then both quadratic forms are those that no
+// compression leaves.
 #include <array>
 #include <vector>
 
@@ -31,7 +33,7 @@ struct ForceAnswer {
   double noise = 0.0;     ///< w . J^T F_B: what the random force of the step adds to f . r per time
 };
 
-/// One solve to this tolerance (0: that of the run). Throws SolverError.
+/// One solve to this tolerance (0: that of the run), and with a pressure those that find it. Throws SolverError.
 template <int D>
 ForceAnswer<D> answer_to_force(const Particles<D>& particles, const StepRecord<D>& record,
                                const std::vector<Vec<D>>& force, double zeta_0, double tolerance,

@@ -22,8 +22,10 @@
 //
 // p is found by conjugate gradients on G^T R^-1 G p = b, a solve of R for each product. For long waves the product is the same
 // for all of them, as a medium of friction resists all compression alike, and so is the mass matrix sum_i h_g(r_i) h_g'(r_i), which
-// therefore is the preconditioner (as for finite elements: Elman, Silvester and Wathen 2014, section 4.2). A grid much finer than r_c would lock what
-// single particles do: with as many pressures as particles the viscosity of a fluid in 2D is half as large again.
+// therefore is the preconditioner (as for finite elements: Elman, Silvester and Wathen 2014, section 4.2).
+//
+// What comes out does not depend on the grid while that is no wider than r_c, but for the fluid's own viscosity: the finer the grid, the less can
+// single particles give way, in 2D at half r_c by half. So compare with the fluid on the same grid (docs/suspensions.md).
 #include <optional>
 #include <span>
 #include <vector>

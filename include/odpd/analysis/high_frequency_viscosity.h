@@ -1,13 +1,13 @@
 #pragma once
 // High-frequency viscosity: the stress that the configuration at a step's start answers to a flow of rate 1 while it has no time to
-// change, by one solve for each plane (answer_to_flow of analysis/frozen.h):
+// change (answer_to_flow of analysis/frozen.h):
 //
 //   eta_ab = (1/V) (A - J w) . Z (A - J w),   A = r_b e_a at each edge,   R w = J^T Z A
 //
-// of a flow along a with its gradient along b, what sliding images of that shear would do to the pairs at once: at frequencies at
-// which neither springs nor structure have time to answer, nor the pressure of the fluid (analysis/frozen.h says what that changes in a
-// suspension). In the fluid itself structure and time still raise it to the viscosity (analysis/helfand.h, whose `frozen` is this number;
-// docs/rheology.md).
+// of a flow along a with its gradient along b, what sliding images of that shear would do to the pairs at once: at frequencies at which
+// neither springs nor structure have time to answer. With the pressure of an incompressible fluid (analysis/frozen_pressure.h) it is, over that of the fluid
+// alone, what suspended bodies add in Stokes flow; without it, one solve for each plane, it is `frozen` of analysis/helfand.h. In the fluid itself
+// structure and time still raise it to the viscosity (docs/rheology.md).
 #include "odpd/analysis/observer.h"
 
 namespace odpd {
@@ -18,7 +18,7 @@ struct FlowPlane {
 
 struct HighFrequencySettings {
   std::vector<FlowPlane> planes;
-  bool incompressible = true;  ///< with a pressure (analysis/frozen_pressure.h)
+  bool incompressible = true;  ///< with a pressure; false: friction alone
   double tolerance = 0.01;     ///< of the solves, relative
 };
 

@@ -1,7 +1,8 @@
 #pragma once
 // Short-time mobilities of free bodies and of molecules at sampled configurations: velocity of a centre per force on it, and
-// angular velocity per torque, while nothing has moved (analysis/frozen.h). D = kT mobility is how an equilibrium run spreads
-// at times in which the configuration does not change (Einstein), without the noise of such a run. By [[body]] and [[molecule]]:
+// angular velocity per torque, while nothing has moved (analysis/frozen.h), in a fluid that does not give way to compression
+// (analysis/frozen_pressure.h): that of Stokes flow around the bodies where they are. kT mobility is short-time diffusion without the noise
+// of a run (Einstein). By [[body]] and [[molecule]]:
 //
 //   translation    (1/d) sum_c e_c . mu e_c,    rotation  (1/n) sum_c e_c . mu_r e_c,  n axes that it turns about
 //   collective     (1/d N) sum_c V_c per force on each, where all N are pushed alike
@@ -31,7 +32,7 @@ struct MobilitySettings {
   bool random_loads = false;  ///< on all at once
   bool own_axes = false;      ///< directions are those of the body's shape, turned with it
   bool collective = false;
-  bool incompressible = true;  ///< with a pressure (analysis/frozen_pressure.h)
+  bool incompressible = true;  ///< with a pressure; false: friction alone
   double tolerance = 0.01;     ///< of the solves, relative
 };
 
