@@ -181,7 +181,7 @@ int calibrate_radius(const CalibrateRadiusOptions& options) {
       options.out.empty() ? fs::path("runs") / (name + "-radius") : options.out;
   const RunLock lock = prepare_radius_directory(directory, record);
   catch_signals();
-  fmt::print("One {} of {} particles, in periodic {} at density {:.5g}, dt = {}\n",
+  fmt::print("One {} of {} particles, in periodic {} at density {:.5g}, dt = {:.4g}\n",
              record.body.name, record.body.sites, settings.dimension == 2 ? "squares" : "cubes",
              record.body.density, record.body.dt);
   const bool done = RadiusCalibrator(options, record, directory).measure();
