@@ -54,16 +54,15 @@ std::string species_text(const std::vector<SpeciesSettings>& species) {
 }
 
 template <int D>
-std::string fluid_lines(const Config& portable, const SceneSettings<D>& s, double density,
-                        bool counted) {
+std::string fluid_lines(const Config& portable, const SceneSettings<D>& s, const MeasuredBody& m) {
   // What physical inputs and calibrations came to, as these go by a density.
   if (const DpdFluid* dpd = dpd_fluid(*s.model))
-    return calibrated_dpd(dpd->p, D, density)->keys() +
+    return calibrated_dpd(dpd->p, D, m.density)->keys() +
            fmt::format("gamma = {}\ngamma_perp = {}\n", dpd->p.gamma, dpd->p.gamma_perp);
   const std::string lines =
-      lines_of(portable.values("fluid"),
-               {"density", "count", "mass", "rho", "zeta_0", "zeta_0_under_flow", "calibration"});
-  return counted ? lines : lines + fmt::format("density = {}\n", density);
+      lines_of(portable.values("fluid"), {"density", "count", "reference_density", "mass", "rho",
+                                          "zeta_0", "zeta_0_under_flow", "calibration"});
+  return m.fills_space ? lines + fmt::format("reference_density = {}\n", m.density) : lines;
 }
 
 template <int D>
@@ -130,11 +129,10 @@ std::string scene_text(const MeasuredBody& m, double edge, std::int64_t count) {
     periodic += c > 0 ? ", true" : "true";
   }
   return fmt::format(
-      "dimension = {}\nseed = {}\n[box]\nsize = [{}]\nperiodic = [{}]\n[fluid]\n{}{}{}"
+      "dimension = {}\nseed = {}\n[box]\nsize = [{}]\nperiodic = [{}]\n[fluid]\n{}count = {}\n{}"
       "[integrator]\nname = \"trapezoidal\"\ndt = {}\n[solver]\ntolerance = 1e-4\n"
       "[run]\nequilibrate = {}\nduration = {}\n",
-      m.dimension, m.seed, edges, periodic, m.fluid,
-      m.counted ? fmt::format("count = {}\n", count) : "", m.species, m.dt,
+      m.dimension, m.seed, edges, periodic, m.fluid, count, m.species, m.dt,
       static_cast<double>(settling) * m.dt, 1e12 * m.dt);
 }
 
@@ -257,12 +255,12 @@ MeasuredBody measured_body(const Config& config, const Scene<D>& scene, double d
   MeasuredBody m;
   m.dimension = D;
   m.name = body.name;
-  m.counted = !reference || reference->spacing == 0.0;
+  m.fills_space = reference && reference->spacing > 0.0;
   m.density = reference ? reference->density
               : s.count >= 0 || s.start == StartKind::file
                   ? static_cast<double>(scene.particles().free_count()) / s.fluid_volume()
                   : s.density;
-  m.fluid = fluid_lines(portable, s, m.density, m.counted);
+  m.fluid = fluid_lines(portable, s, m);
   m.species = species_text(s.species) + tables_of(portable, "pair");
   m.body = lines_of(portable.elements("body")[at],
                     {"positions", "count", "fraction", "fraction_of", "clearance", "force",

@@ -15,10 +15,11 @@ struct MeasuredBody {
   int dimension = 3;
   std::string name;  ///< of the [[body]]
   // As TOML:
-  std::string fluid;       ///< lines of [fluid], but for what says how many particles there are
-  std::string species;     ///< [[species]] and [[pair]]
-  std::string body;        ///< lines of its [[body]], but for its place
-  bool counted = true;     ///< the number of particles is given; else the model makes room (SDPD)
+  std::string fluid;    ///< lines of [fluid], but for what says how many particles there are
+  std::string species;  ///< [[species]] and [[pair]]
+  std::string body;     ///< lines of its [[body]], but for its place
+  bool fills_space =
+      false;  ///< friction goes by densities, with those of the body's particles (SDPD)
   std::int64_t sites = 0;  ///< particles of the body
   double reach = 0.0;      ///< its outermost ones from its centre (length)
   bool round = true;       ///< a disk or ball, or like one
@@ -27,8 +28,8 @@ struct MeasuredBody {
   double dt = 0.01;
   std::uint64_t seed = 1;
 
-  /// Of the fluid, over that of the density: 2, or 0 where the model's friction goes by densities.
-  double viscosity_exponent() const { return counted ? 2.0 : 0.0; }
+  /// Of the density, in the viscosity of the fluid near it.
+  double viscosity_exponent() const { return fills_space ? 0.0 : 2.0; }
   /// Edges of three cubes, the smallest one first (length): 4, 5 and 6 (2D: 4, 6 and 8) times a cutoff/2 more than the reach.
   std::vector<double> default_edges() const;
   /// Farther from the centre than this the fluid is taken for undisturbed (length): 3/2 cutoffs beyond the reach, or half an edge.
