@@ -236,9 +236,13 @@ BodyInCell body_in(const MeasuredBody& m, double edge, double excluded, int thre
 }  // namespace
 
 std::vector<double> MeasuredBody::default_edges() const {
-  const double unit = reach + 0.5 * cutoff;
-  if (dimension > 2) return {4.0 * unit, 5.0 * unit, 6.0 * unit};
-  return {4.0 * unit, 6.0 * unit, 8.0 * unit};
+  std::vector<double> edges;
+  for (const double multiple :
+       dimension > 2 ? std::array{4.0, 5.0, 6.0} : std::array{4.0, 6.0, 8.0}) {
+    const double least = edges.empty() ? 0.0 : edges.back() / cutoff + 1.0;
+    edges.push_back(cutoff * std::max(least, std::ceil(multiple * (reach / cutoff + 0.5))));
+  }
+  return edges;
 }
 
 double MeasuredBody::far(double edge) const { return std::min(reach + 1.5 * cutoff, 0.5 * edge); }
