@@ -20,8 +20,6 @@ constexpr double mass_tolerance = 0.1;
 constexpr double value_tolerance = 0.2;
 // Times the value without a pressure: it grows for ever.
 constexpr double too_much = 100.0;
-// Of the grid, in cutoffs.
-constexpr double grid_spacing = 1.0;
 
 }  // namespace
 
@@ -270,7 +268,7 @@ std::optional<FrozenPressure<D>> pressure_on(const Particles<D>& particles,
   if (!wanted) return {};
   const double reach = scene.model().cutoff();
   return std::optional<FrozenPressure<D>>(std::in_place, particles, record, reach,
-                                          grid_spacing * reach, tolerance);
+                                          pressure_spacing * reach, tolerance);
 }
 
 #define ODPD_INSTANTIATE(D)                                 \

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "odpd/analysis/block_average.h"
+#include "odpd/analysis/frozen_pressure.h"
 #include "odpd/app/calibrated_model.h"
 #include "odpd/app/calibration_run.h"
 #include "odpd/app/simulation.h"
@@ -167,8 +168,10 @@ template <int D>
 PureFluid pure_fluid_in(const MeasuredBody& m, int threads,
                         const std::function<bool(const PureFluid&)>& enough,
                         const std::function<bool()>& stop) {
-  const std::int64_t count = default_particles(D, m.density, m.cutoff);
-  const double edge = std::pow(static_cast<double>(count) / m.density, 1.0 / D);
+  const auto usual = static_cast<double>(default_particles(D, m.density, m.cutoff));
+  const double unit = pressure_spacing * m.cutoff;
+  const double edge = unit * std::ceil(std::pow(usual / m.density, 1.0 / D) / unit);
+  const std::int64_t count = std::llround(m.density * std::pow(edge, D));
   const Config config = Config::from_text(
       scene_text(m, edge, count) + fmt::format("[[observe]]\nkind = \"high-frequency-viscosity\"\n"
                                                "every = {}\n",
@@ -235,12 +238,14 @@ BodyInCell body_in(const MeasuredBody& m, double edge, double excluded, int thre
 
 }  // namespace
 
+// Whole spacings of the pressure's grid, as the fluid's viscosity depends on it.
 std::vector<double> MeasuredBody::default_edges() const {
+  const double unit = pressure_spacing * cutoff;
   std::vector<double> edges;
   for (const double multiple :
        dimension > 2 ? std::array{4.0, 5.0, 6.0} : std::array{4.0, 6.0, 8.0}) {
-    const double least = edges.empty() ? 0.0 : edges.back() / cutoff + 1.0;
-    edges.push_back(cutoff * std::max(least, std::ceil(multiple * (reach / cutoff + 0.5))));
+    const double least = edges.empty() ? 0.0 : edges.back() / unit + 1.0;
+    edges.push_back(unit * std::max(least, std::ceil(multiple * (reach + 0.5 * cutoff) / unit)));
   }
   return edges;
 }
