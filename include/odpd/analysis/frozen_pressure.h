@@ -100,7 +100,7 @@ class FrozenPressure {
 };
 
 /// Solves for one load, as a rule: one without the pressure, and those that find it.
-constexpr double solves_with_pressure = 6.0;
+constexpr double solves_with_pressure = 5.0;
 
 /// Spacing of an observer's grid, in cutoffs, as near as the box allows.
 constexpr double pressure_spacing = 1.5;
