@@ -55,6 +55,10 @@ RunLock prepare_radius_directory(const fs::path& directory, RadiusRecord& record
   return prepare_run_directory(directory);
 }
 
+double ball_volume(int dimension, double a) {
+  return (dimension > 2 ? unit_ball_volume<3> : unit_ball_volume<2>)*std::pow(a, dimension);
+}
+
 // Below, a standard error is hardly known.
 constexpr std::int64_t least_samples = 32;
 
@@ -82,11 +86,10 @@ class RadiusCalibrator {
     fmt::print("  {:>8} {:>9} {:>18} {:>18} {:>18} {:>18} {:>18} {:>8}\n", "edge", "particles",
                "density, far", "mobility", "radius by drag", "by torque", "excluded volume",
                "seconds");
-    // Fluid keeps some half of a spacing away from sites.
-    double excluded = (body.dimension > 2 ? unit_ball_volume<3> : unit_ball_volume<2>)*std::pow(
-        body.reach + 0.6 * std::pow(body.density, -1.0 / body.dimension), body.dimension);
+    double excluded = first_guess();
     const double goal =
         of_boxes * record_.relative_error * std::sqrt(static_cast<double>(record_.edges.size()));
+    if (stopped()) return false;
     for (const double edge : record_.edges) {
       if (!measure_in(edge, excluded, goal)) return false;
       excluded = record_.excluded().value;
@@ -95,6 +98,19 @@ class RadiusCalibrator {
   }
 
  private:
+  // v_ex. Fluid keeps some half of a spacing away from sites; of long bodies some configurations tell.
+  double first_guess() const {
+    const MeasuredBody& body = record_.body;
+    const double ball = ball_volume(
+        body.dimension, body.reach + 0.6 * std::pow(body.density, -1.0 / body.dimension));
+    if (body.round || record_.take(record_.edges.front()).samples > 0) return ball;
+    constexpr std::int64_t some = 8;
+    const BodyInCell trial = measure_body(
+        body, record_.edges.front(), ball, options_.threads,
+        [](const BodyInCell& c) { return c.samples >= some; }, [&] { return stopped(); });
+    return trial.samples > 0 ? std::clamp(excluded_volume(trial).value, 0.0, ball) : ball;
+  }
+
   bool measure_in(double edge, double excluded, double goal) {
     const Stopwatch watch;
     bool complete = false;
@@ -154,8 +170,7 @@ std::string conclusion(const RadiusRecord& r) {
         "  It is longer than wide: the radius is that of the ball with its mean mobility, over all "
         "directions, and the\n  torque's that of the ball with its mean rotational one\n";
   out += fmt::format("Excluded volume: {}; a ball of the hydrodynamic radius has {:.5g}\n", text(v),
-                     (r.body.dimension > 2 ? unit_ball_volume<3> : unit_ball_volume<2>)*std::pow(
-                         a.value, r.body.dimension));
+                     ball_volume(r.body.dimension, a.value));
   const double apart = std::abs(line.value - a.value);
   if (apart > 2.0 * line.error && apart > 0.03 * a.value)
     log_warning(
