@@ -68,25 +68,23 @@ bool load_by_torque(std::span<const std::int32_t> particles, std::span<const Vec
 
 double sign(double uniform) { return uniform < 0.5 ? -1.0 : 1.0; }
 
-// Of each [[body]], how much of a force on all its sites take, with 1 for a particle of the fluid. Empty where no volume is given,
-// or something holds the fluid.
+// Of each [[body]], how much of a force on all its sites take, with 1 for a particle of the fluid. Empty where the volume of one of
+// them is not given, or something holds the fluid.
 template <int D>
 std::vector<double> weights_of_sites(const Scene<D>& scene) {
   const SceneSettings<D>& s = scene.settings();
   double sites = 0.0, excluded = 0.0;
   for (const BodySettings<D>& b : s.bodies) {
-    if (b.excluded_volume <= 0.0) continue;
+    if (b.excluded_volume <= 0.0) return {};
     sites += static_cast<double>(b.particles());
     excluded += static_cast<double>(b.bodies()) * b.excluded_volume;
   }
-  if (excluded == 0.0 || !scene.conserves_momentum()) return {};
+  if (s.bodies.empty() || !scene.conserves_momentum()) return {};
   const double n =
       (static_cast<double>(scene.particles().size()) - sites) / (s.fluid_volume() - excluded);
   std::vector<double> weights;
   for (const BodySettings<D>& b : s.bodies)
-    weights.push_back(b.excluded_volume > 0.0
-                          ? n * b.excluded_volume / static_cast<double>(b.shape.size())
-                          : 1.0);
+    weights.push_back(n * b.excluded_volume / static_cast<double>(b.shape.size()));
   return weights;
 }
 
@@ -281,7 +279,8 @@ auto Mobility<D>::to_unit_loads(const Step& step, const std::vector<Mover>& move
       double& component = means.components[index(D + c)];
       if (own == 0 ||
           !load_by_torque<D>(mover.particles, mover.arms, turning_axis(mover.axes, c), force)) {
-        component = std::nan("");
+        // About its line a rod does not turn: e . mu e is 0 where e comes to lie along it, and of its own axis there is none.
+        if (own == 0 || mobility_.own_axes) component = std::nan("");
         continue;
       }
       const double mobility = answer(step, force);

@@ -66,6 +66,10 @@ std::int64_t count_of_fraction(const Config& entry, const ShapeKeys& keys, const
   for (double volume = 0.0;; ++count) {
     const double next = volume_of_body(index(count));
     if (volume + 0.5 * next > wanted) return count;
+    if (count == most_bodies)
+      entry.fail("fraction", fmt::format("would be more than {} bodies: use larger ones, or a "
+                                         "smaller deviation of their radii",
+                                         most_bodies));
     volume += next;
   }
 }
@@ -150,14 +154,17 @@ template <int D>
 void check_turns(const Config& entry, const Box<D>& box, const BodySettings<D>& body) {
   constexpr double thin = 1e-3;
   const double edge = *std::max_element(box.size.x.begin(), box.size.x.end());
-  // Of a smaller one rounding of positions in the box would tell the orientation.
-  if (!(body.radius() > 1e-9 * edge))
-    entry.fail("shape", "a body that turns needs two points not in one place");
-  if (rotations<D>(body.shape) > rotations<D>(body.shape, thin * thin))
-    entry.fail("shape", fmt::format("its points lie almost on a line, within {} of their extent: "
-                                    "put them on it to a millionth of that (more digits), or "
-                                    "farther from it",
-                                    thin));
+  for (std::size_t k = 0; k < std::max<std::size_t>(1, body.shapes.size()); ++k) {
+    // Of a smaller one rounding of positions in the box would tell the orientation.
+    if (!(body.radius(k) > 1e-9 * edge))
+      entry.fail("shape", "a body that turns needs two points not in one place");
+    const std::vector<Vec<D>>& shape = body.shape_of(k);
+    if (rotations<D>(shape) > rotations<D>(shape, thin * thin))
+      entry.fail("shape", fmt::format("its points lie almost on a line, within {} of their extent: "
+                                      "put them on it to a millionth of that (more digits), or "
+                                      "farther from it",
+                                      thin));
+  }
 }
 
 }  // namespace

@@ -191,8 +191,13 @@ Radii::Radii(const Config& entry, const ShapeKeys& keys, std::uint64_t seed, std
 double Radii::of(std::size_t body) const {
   if (!list_.empty()) return list_[body];
   if (deviation_ == 0.0) return mean_;
-  const double w = random_.normal(0, 0, kind_, body);
-  if (!lognormal_) return mean_ + deviation_ * w;
+  double w = random_.normal(0, 0, kind_, body);
+  if (!lognormal_) {
+    // Radii at 0 and below, one of some millions at most, are drawn again.
+    for (std::uint64_t again = 1; mean_ + deviation_ * w <= 0.0; ++again)
+      w = random_.normal(again, 0, kind_, body);
+    return mean_ + deviation_ * w;
+  }
   // ln R has the variance ln(1 + (deviation/mean)^2) and half of that less than ln(mean) as its mean.
   const double variance = std::log1p(deviation_ * deviation_ / (mean_ * mean_));
   return mean_ * std::exp(std::sqrt(variance) * w - 0.5 * variance);

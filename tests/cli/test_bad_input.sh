@@ -89,6 +89,8 @@ expect_error 1 run box "${sheared[@]}" --set 'body_force.force=[1.0, 0.0]' \
   --set 'body_force.wave={ along = "y", number = 1 }' -- body_force.force '[shear]'
 expect_error 1 run box "${sheared[@]}" --set 'observe=[{kind="msd", directions=["x"]}]' -- directions flow
 expect_error 1 run box --set 'body=[{shape="ring", radius=0.2}]' --set 'observe=[{kind="bodies", directions=["w"]}]' -- directions "'w'"
+expect_error 1 run box --set 'body=[{shape="ring", radius=[0.5, 1e-12]}]' -- shape "two points"
+expect_error 1 run box --set 'body=[{shape="ring", radius=[0.5, -0.1]}]' -- radius "positive"
 expect_error 1 run channel "${sheared[@]}" -- shear.gradient bounded velocity
 # Physical inputs: both sets at once, and what the formulas cannot give.
 physical=(--set fluid.eta=3.0)

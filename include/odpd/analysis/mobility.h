@@ -15,7 +15,7 @@
 //
 // Where nothing takes up a force (no wall, no held body, no drag) the opposite one is spread over the box, and velocities are relative
 // to the mean over it: that of a periodic box without net flow. Free particles share in it alike, the sites of a body as the fluid in
-// its place would where the `excluded_volume` of its [[body]] is given, n v_ex of them by n fluid particles per volume between bodies,
+// its place would where the `excluded_volume` of every [[body]] is given, n v_ex of them by n fluid particles per volume between bodies,
 // else like other particles. With the volume it is the uniform pressure gradient of Hasimoto 1959. Beads of a molecule give way to the
 // load each by itself, as springs take time: it is the mobility before they do, above that of a rigid body of the same beads.
 #include "odpd/analysis/frozen_pressure.h"

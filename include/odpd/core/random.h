@@ -36,7 +36,7 @@ enum class Stream : std::uint64_t {
   /// Positions of molecules (attempt, 0, molecule, 0), turns (attempt, 1, molecule, 0), steps of a walk
   /// (attempt, 2 + trial, molecule, bead).
   molecules = 12,
-  body_sizes = 13,  ///< radii of bodies (0, 0, which [[body]], which of its bodies)
+  body_sizes = 13,  ///< radii of bodies (attempt, 0, which [[body]], which of its bodies)
   /// Loads of the observer `mobility`: which bodies or molecules are loaded (step, 0, which, 0), signs of random forces
   /// (step, 1, which, 0) and torques (step, 2, which, 0).
   loads = 14,

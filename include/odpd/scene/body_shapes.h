@@ -6,7 +6,7 @@
 //
 // so that there are 1/spacing^2 per area everywhere, whatever the surface (Vogel 1979 on a disk, Swinbank & Purser 2006 on a
 // sphere). As no stretch that keeps areas brings the points of this lattice near each other, neighbours are
-// sqrt(2/sqrt 5) = .946 spacing apart or more, at the ends of the axis .87. Areas:
+// sqrt(2/sqrt 5) = .946 spacing apart or more, at the ends of the axis .87; on bodies few spacings thick less, at .1 of the length .6. Areas:
 //
 //   spherocylinder of length L   A = 2 pi R L, its caps included (Archimedes)
 //   spheroid, half axes a and b  A(x) = 2 pi a b int_-1^(x/a) sqrt(1 - e t^2) dt,   e = 1 - b^2/a^2
