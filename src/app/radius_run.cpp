@@ -241,11 +241,14 @@ BodyInCell body_in(const MeasuredBody& m, double edge, double excluded, int thre
 // Whole spacings of the pressure's grid, as the fluid's viscosity depends on it.
 std::vector<double> MeasuredBody::default_edges() const {
   const double unit = pressure_spacing * cutoff;
+  // Sites of a sphere reach a per cent or two beyond its radius: no larger box for that.
+  const double slack = 0.25 * cutoff;
   std::vector<double> edges;
   for (const double multiple :
        dimension > 2 ? std::array{4.0, 5.0, 6.0} : std::array{4.0, 6.0, 8.0}) {
     const double least = edges.empty() ? 0.0 : edges.back() / unit + 1.0;
-    edges.push_back(unit * std::max(least, std::ceil(multiple * (reach + 0.5 * cutoff) / unit)));
+    edges.push_back(unit *
+                    std::max(least, std::ceil((multiple * (reach + 0.5 * cutoff) - slack) / unit)));
   }
   return edges;
 }

@@ -30,8 +30,8 @@ struct MeasuredBody {
 
   /// Of the density, in the viscosity of the fluid near it.
   double viscosity_exponent() const { return fills_space ? 0.0 : 2.0; }
-  /// Edges of three cubes, the smallest one first (length): at least 4, 5 and 6 (2D: 4, 6 and 8) times a cutoff/2 more than the reach, and whole
-  /// multiples of the cutoff, as the grid of the pressure (analysis/frozen_pressure.h) then is as fine in all of them.
+  /// Edges of three cubes, the smallest one first (length): at least 4, 5 and 6 (2D: 4, 6 and 8) times a cutoff/2 more than the reach, about, and
+  /// whole multiples of 1.5 cutoffs, as the grid of the pressure (analysis/frozen_pressure.h) then is as fine in all of them.
   std::vector<double> default_edges() const;
   /// Farther from the centre than this the fluid is taken for undisturbed (length): 3/2 cutoffs beyond the reach, or half an edge.
   double far(double edge) const;
