@@ -58,7 +58,8 @@ void FrozenPressure<D>::place(const Particles<D>& particles, double spacing) {
       low = ranks_.smallest(low);
       high = std::max(ranks_.largest(high), low + 1e-6 * spacing);
     }
-    const double cells = std::max(1.0, std::round((high - low) / spacing));
+    // Two nodes at least: one alone knows no compression along this direction.
+    const double cells = std::max(periodic ? 2.0 : 1.0, std::round((high - low) / spacing));
     origin[c] = low;
     cell[c] = (high - low) / cells;
     last[index(c)] = static_cast<std::int32_t>(cells) - 1;
@@ -235,13 +236,12 @@ auto FrozenPressure<D>::hold(std::vector<double>& rates, std::vector<Vec<D>>& ve
     const double down = fixed_dot(rates, direction);
     const double step = -down / fixed_dot(direction, change);
     gained += step * down;
-    if (!(step > 0.0 && gained < too_much * value) || held.solves == most_iterations)
+    if (!(step > 0.0 && gained < too_much * value) || held.solves > most_iterations)
       throw SolverError(fmt::format(
           "no pressure keeps the fluid from compression in what the configuration answers to a "
-          "load (solve {}): "
-          "some of its {} free particles cannot give way on a grid of {} nodes; set incompressible "
-          "= false",
-          held.solves, std::count(free_.begin(), free_.end(), 1), nodes()));
+          "load (solve {}): some of its {} free particles cannot give way on a grid of {} nodes, "
+          "or solves to {:.3g} are too loose; use a smaller tolerance, or incompressible = false",
+          held.solves, std::count(free_.begin(), free_.end(), 1), nodes(), tolerance));
     parallel_for(std::ssize(velocity),
                  [&](std::int64_t i) { velocity[index(i)] += step * u[index(i)]; });
     const std::vector<double> before = rates;

@@ -276,6 +276,21 @@ TYPED_TEST(FrozenPressureTest, MobilityIsThatOfTheSaddlePoint) {
   }
 }
 
+// A box narrower than the spacing has two nodes along it still: one alone would leave friction as it is, without a word.
+TYPED_TEST(FrozenPressureTest, NarrowBoxesHaveAPressureToo) {
+  constexpr int D = TypeParam::D;
+  OneStep<D> step(fluid_with_bodies<D>());
+  const double wide = 10.0 * step.record.start.box.size[0];
+  const FrozenPressure<D> pressure(step.scene.particles(), step.record, 1.0, wide, 1e-8);
+  EXPECT_EQ(pressure.nodes(), 1U << D);
+  auto force = support::random_vectors<D>(step.record.start.position.size(), 9);
+  const auto mobility = [&](const FrozenPressure<D>* with) {
+    return odpd::answer_to_force<D>(step.scene.particles(), step.record, force, 0.0, 1e-8, with)
+        .mobility;
+  };
+  EXPECT_LT(mobility(&pressure), 0.999 * mobility(nullptr));
+}
+
 // Of flows: V eta of the saddle point, but for the rate of the whole, which no motion changes.
 TYPED_TEST(FrozenPressureTest, ViscosityIsThatOfTheSaddlePoint) {
   constexpr int D = TypeParam::D;

@@ -9,10 +9,11 @@
 //
 //   t = c e - Z J w,    R w = J^T c e,    c = W'(r) times the number of free ends,    W = (1 - r/r_c)^2
 //
-// so that J^T t = 0. C s with c e in place of t would be how fast densities sum_j W(r_ij) of the free particles change. But a smooth
-// compression need not change those, as particles can make way for each other until they have the same neighbours at a smaller distance.
-// Where one pressure everywhere pushes nobody there is no such way: only the slip of the whole is left in C s. All goes by pairs:
-// momentum is kept, and uniform motion has no rate. Constituents of bodies and particles of walls have no pressure of their own.
+// so that J^T t = 0 (but for what a drag zeta_0 takes up). C s with c e in place of t would be how fast densities sum_j W(r_ij) of the free
+// particles change. But a smooth compression need not change those, as particles can make way for each other until they have the same
+// neighbours at a smaller distance. Where one pressure everywhere pushes nobody there is no such way: only the slip of the whole is left
+// in C s. All goes by pairs: momentum is kept, and uniform motion has no rate. Constituents of bodies and particles of walls have no
+// pressure of their own.
 //
 // p makes a functional of the load smallest or largest, whose value there is the one wanted, so that the error of this is of second
 // order in those of p and of u:
@@ -24,9 +25,9 @@
 // for all of them, as a medium of friction resists all compression alike, and so is the mass matrix sum_i h_g(r_i) h_g'(r_i), which
 // therefore is the preconditioner (as for finite elements: Elman, Silvester and Wathen 2014, section 4.2).
 //
-// Radii of bodies do not depend on the grid's spacing up to 2 r_c. The fluid's own viscosity does, as the finer the grid, the less can single
-// particles give way: at 1.5 r_c it is that of a sheared fluid within 2 %, at 1 r_c 2 to 6 % above. Compare a suspension with the fluid on the same
-// grid (docs/suspensions.md).
+// Radii of bodies larger than r_c do not depend on the grid's spacing up to 2 r_c. The fluid's own viscosity does, as the finer the grid,
+// the less can single particles give way: at 1.5 r_c it is that of a sheared fluid within 2 %, at 1 r_c 2 to 6 % above. Compare a
+// suspension with the fluid on the same grid (docs/suspensions.md).
 #include <optional>
 #include <span>
 #include <vector>
