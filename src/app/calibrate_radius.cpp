@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "odpd/analysis/frozen_pressure.h"
 #include "odpd/app/interrupt.h"
 #include "odpd/app/radius_record.h"
 #include "odpd/app/report.h"
@@ -29,6 +30,7 @@ RadiusRecord read_body_record(const CalibrateRadiusOptions& options, const Confi
   record.body = measured_body(config, simulation.scene(), settings.clock.dt, options.body);
   record.edges = options.edges.empty() ? record.body.default_edges() : options.edges;
   std::sort(record.edges.begin(), record.edges.end());
+  record.edges.erase(std::unique(record.edges.begin(), record.edges.end()), record.edges.end());
   if (options.relative_error > 0.0) record.relative_error = options.relative_error;
   const double least =
       std::max(4.0 * record.body.reach, 2.0 * (record.body.reach + record.body.cutoff));
@@ -38,6 +40,13 @@ RadiusRecord read_body_record(const CalibrateRadiusOptions& options, const Confi
           "--boxes: an edge of {:.6g} is too short: a body must be shorter than half of it, with a "
           "cutoff of fluid beyond its {:.6g}; longer than {:.6g} will do",
           edge, record.body.reach, least));
+  const double cell = pressure_spacing * record.body.cutoff;
+  for (const double edge : record.edges)
+    if (std::abs(edge / cell - std::round(edge / cell)) > 0.01)
+      log_warning(fmt::format(
+          "--boxes: {:.6g} is no whole multiple of {:.6g}, the width of the cells of the pressure, "
+          "which the viscosity goes by: {:.6g} is",
+          edge, cell, cell * std::ceil(edge / cell)));
   return record;
 }
 
@@ -78,8 +87,11 @@ class RadiusCalibrator {
     };
     if (!known(record_.fluid)) {
       log_info("measuring the fluid alone");
-      record_.fluid = measure_pure_fluid(body, options_.threads, known, [&] { return stopped(); });
-      if (!known(record_.fluid)) return false;
+      // What is there already stays until there is better.
+      const PureFluid fluid =
+          measure_pure_fluid(body, options_.threads, known, [&] { return stopped(); });
+      if (!known(fluid)) return false;
+      record_.fluid = fluid;
     }
     fmt::print("  fluid alone at density {:.5g}: eta = {}\n", record_.fluid.density.value,
                with_error(record_.fluid.eta.value, record_.fluid.eta.error));
@@ -122,7 +134,8 @@ class RadiusCalibrator {
       return complete;
     };
     BodyInCell cell = record_.take(edge);
-    if (!known(cell)) {
+    const bool there = known(cell);
+    if (!there) {
       log_info(fmt::format("measuring in a box with an edge of {:.6g}", edge));
       cell = measure_body(record_.body, edge, excluded, options_.threads, known,
                           [&] { return stopped(); });
@@ -131,12 +144,11 @@ class RadiusCalibrator {
     if (std::isnan(record_.drag(cell).value))
       throw SolverError(fmt::format(
           "a box with an edge of {:.6g} is too small (or too large) for the series: the mobility "
-          "of "
-          "{} there, {}, is of no radius below {:.6g}; choose other --boxes",
+          "of {} there, {}, is of no radius below {:.6g}; choose other --boxes",
           edge, record_.body.name, with_error(cell.translation.value, cell.translation.error),
           (record_.body.dimension > 2 ? 0.4 : 0.3) * edge));
-    record_.add(cell);
-    write_radius(directory_, record_, false);
+    record_.cells.push_back(cell);
+    if (!there) write_radius(directory_, record_, false);
     const auto text = [](const Measured& m) { return with_error(m.value, m.error); };
     fmt::print("  {:>8.4g} {:>9} {:>18} {:>18} {:>18} {:>18} {:>18} {:>8.1f}\n", edge,
                cell.particles, text(cell.density), text(cell.translation), text(record_.drag(cell)),
@@ -169,14 +181,17 @@ std::string conclusion(const RadiusRecord& r) {
     out +=
         "  It is longer than wide: the radius is that of the ball with its mean mobility, over all "
         "directions, and the\n  torque's that of the ball with its mean rotational one\n";
+  if (r.body.reach < r.body.cutoff)
+    out +=
+        "  It is smaller than the cutoff, and so than the cells of the pressure: the drag's radius "
+        "may be off by some 5 %\n";
   out += fmt::format("Excluded volume: {}; a ball of the hydrodynamic radius has {:.5g}\n", text(v),
                      ball_volume(r.body.dimension, a.value));
   const double apart = std::abs(line.value - a.value);
   if (apart > 2.0 * line.error && apart > 0.03 * a.value)
     log_warning(
         "the radius depends on the box: take larger ones (--boxes), as at a few cutoffs a fluid "
-        "has "
-        "another viscosity than on long ways (docs/generalised-hydrodynamics.md)");
+        "has another viscosity than on long ways (docs/generalised-hydrodynamics.md)");
   out += fmt::format(
       "\n[[body]]\nname = \"{}\"\n# measured at density {}, eta = {}\nhydrodynamic_radius = {:.5g}"
       "   # +- {:.2g}\nexcluded_volume = {:.5g}   # +- {:.2g}\n",
@@ -200,7 +215,7 @@ int calibrate_radius(const CalibrateRadiusOptions& options) {
              record.body.name, record.body.sites, settings.dimension == 2 ? "squares" : "cubes",
              record.body.density, record.body.dt);
   const bool done = RadiusCalibrator(options, record, directory).measure();
-  write_radius(directory, record, done);
+  if (done) write_radius(directory, record, true);
   if (!done && interrupted()) return 130;
   if (!done)
     throw Error(

@@ -230,8 +230,10 @@ const Scalar* measured_viscosity(const Results& results) {
 template <int D>
 KnownViscosity known_viscosity(const Scene<D>& scene, double density) {
   const PairModel<D>& model = *scene.settings().model;
-  if (const DpdFluid* dpd = dpd_fluid(model); dpd != nullptr && dpd->calibration)
-    return {dpd->calibration->eta, "calibration"};
+  if (const DpdFluid* dpd = dpd_fluid(model); dpd != nullptr && dpd->calibration) {
+    const Calibration& c = *dpd->calibration;
+    return {c.eta * std::pow(density / c.density, 2), "calibration"};
+  }
   if (const SdpdModel<D>* sdpd = sdpd_fluid(model)) {
     const double asked = sdpd->friction().eta(D);
     if (const auto e = expectation(model)) return {e->ratio * asked, "expected"};

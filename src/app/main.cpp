@@ -172,11 +172,13 @@ CLI::App* add_calibrate(CLI::App& app, CalibrateCommand& options, bool& quiet) {
                           ->add_flag("--measure-only", calibrate.measure_only,
                                      "one measurement, at the friction of the case")
                           ->excludes(eta);
-  options.radius = command
-                       ->add_option("--radius", options.body,
-                                    "measure how large the free [[body]] of this name is to a flow "
-                                    "and to the fluid's particles [the only one]")
-                       ->expected(0, 1);
+  options.radius =
+      command
+          ->add_option(
+              "--radius", options.body,
+              "after the case: measure how large the free [[body]] of this name is to a flow "
+              "and to the fluid's particles [the only one]")
+          ->expected(0, 1);
   for (CLI::Option* other : {eta, rate, particles, only}) options.radius->excludes(other);
   command
       ->add_option("--boxes", options.edges,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "odpd/analysis/frozen_pressure.h"
 #include "odpd/io/csv.h"
 #include "odpd/io/file.h"
 #include "odpd/io/json.h"
@@ -34,7 +35,12 @@ Table radius_table(const RadiusRecord& r) {
                    "torque_radius_error",
                    "excluded_volume",
                    "excluded_volume_error"};
-  for (const BodyInCell& c : r.cells) {
+  std::vector<BodyInCell> all = r.cells;
+  for (const BodyInCell& c : r.earlier)
+    if (std::none_of(r.cells.begin(), r.cells.end(),
+                     [&](const BodyInCell& other) { return other.edge == c.edge; }))
+      all.push_back(c);
+  for (const BodyInCell& c : all) {
     std::vector<double> row{c.edge, static_cast<double>(c.particles),
                             static_cast<double>(c.samples)};
     for (const Measured& m :
@@ -45,10 +51,12 @@ Table radius_table(const RadiusRecord& r) {
   return table;
 }
 
-// What must agree for measurements to be of the same.
+// What must agree for measurements to be of the same, the estimator among it.
 std::string inputs_of(const MeasuredBody& b) {
-  return fmt::format("dimension = {}\nseed = {}\ndt = {}\ndensity = {}\n[fluid]\n{}{}[[body]]\n{}",
-                     b.dimension, b.seed, b.dt, b.density, b.fluid, b.species, b.body);
+  return fmt::format(
+      "dimension = {}\nseed = {}\ndt = {}\ndensity = {}\npressure_spacing = {}\n[fluid]\n{}{}"
+      "[[body]]\n{}",
+      b.dimension, b.seed, b.dt, b.density, pressure_spacing, b.fluid, b.species, b.body);
 }
 
 }  // namespace

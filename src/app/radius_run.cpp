@@ -12,6 +12,7 @@
 #include "odpd/app/calibrated_model.h"
 #include "odpd/app/calibration_run.h"
 #include "odpd/app/simulation.h"
+#include "odpd/core/log.h"
 #include "odpd/core/parallel.h"
 #include "odpd/pairs/dpd.h"
 
@@ -109,10 +110,38 @@ void check_measurable(const Config& config, const Scene<D>& scene, const Config&
     fluid.fail("mass",
                "configurations and friction are those without mass, and so are measured: add "
                "--set fluid.mass=0.0 (with physical inputs that need a mass give gamma, a, s)");
+  if (!s.molecules.empty())
+    log_warning("[[molecule]] is left out: the radius is measured in the fluid alone");
   if (!body.shapes.empty())
     entry.fail("radius",
                "bodies of several sizes have several radii: choose one, as by --set "
                "body.0.radius=1.0");
+}
+
+// Of the fluid between the bodies of the case, where all of these say what they take from it; else over all the space.
+template <int D>
+double density_between(const Scene<D>& scene) {
+  const SceneSettings<D>& s = scene.settings();
+  double excluded = 0.0, balls = 0.0;
+  bool known = true;
+  for (const BodySettings<D>& b : s.bodies) {
+    const auto bodies = static_cast<double>(b.bodies());
+    known = known && b.excluded_volume > 0.0;
+    excluded += bodies * b.excluded_volume;
+    balls += bodies * unit_ball_volume<D> * std::pow(b.radius(), D);
+  }
+  const double space = s.fluid_volume();
+  const std::int64_t fluid = s.count >= 0 || s.start == StartKind::file
+                                 ? scene.particles().free_count() - s.molecule_beads()
+                                 : std::llround(s.density * space);
+  constexpr double some = 0.05;
+  if (!known && balls > some * space)
+    log_warning(
+        fmt::format("bodies take some {:.2g} of the space, and how much exactly is not given: the "
+                    "fluid is measured at the density {:.5g} of all the space, but is denser "
+                    "between them; give each [[body]] its excluded_volume and calibrate again",
+                    balls / space, static_cast<double>(fluid) / space));
+  return static_cast<double>(fluid) / (known ? space - excluded : space);
 }
 
 // Small steps cost little beside the solves of the mobility, and sample the better.
@@ -268,10 +297,7 @@ MeasuredBody measured_body(const Config& config, const Scene<D>& scene, double d
   m.dimension = D;
   m.name = body.name;
   m.fills_space = reference && reference->spacing > 0.0;
-  m.density = reference ? reference->density
-              : s.count >= 0 || s.start == StartKind::file
-                  ? static_cast<double>(scene.particles().free_count()) / s.fluid_volume()
-                  : s.density;
+  m.density = reference ? reference->density : density_between(scene);
   m.fluid = fluid_lines(portable, s, m);
   m.species = species_text(s.species) + tables_of(portable, "pair");
   m.body = lines_of(portable.elements("body")[at],

@@ -82,7 +82,6 @@ TEST(RadiusRun, TakesFluidAndBodyOfACase) {
   EXPECT_NE(m.fluid.find("gamma = "), std::string::npos);
   EXPECT_NE(m.species.find("a = 10"), std::string::npos);
   EXPECT_EQ(m.body.find("excluded_volume"), std::string::npos);
-  EXPECT_EQ(m.default_edges(), (std::vector<double>{6.0, 9.0, 12.0}));
   EXPECT_DOUBLE_EQ(m.far(6.0), 2.5);
   EXPECT_DOUBLE_EQ(m.far(4.4), 2.2);
   // The scene made of them is the one asked for.
@@ -92,6 +91,35 @@ TEST(RadiusRun, TakesFluidAndBodyOfACase) {
   EXPECT_EQ(cell.samples, 2);
   EXPECT_EQ(cell.particles, 3 * (36 - 4) + 19);
   EXPECT_THROW(body_of(text), odpd::ConfigError);
+}
+
+// The fluid between bodies that say what they take, without beads of molecules.
+TEST(RadiusRun, DensityOfTheFluidAlone) {
+  const std::string disks =
+      "[[body]]\nname = \"disk\"\nshape = \"disk\"\nradius = 1.0\nrings = 2\ncount = 4\n";
+  const std::string chains =
+      "[[molecule]]\nname = \"pair\"\nspecies = \"fluid\"\nshape = \"chain\"\nbeads = 2\nspacing = "
+      "0.3\nH = "
+      "100.0\ncount = 9\n";
+  const std::string fluid = "count = 432\na = 18.5\ngamma = 4.5\n";
+  EXPECT_DOUBLE_EQ(body_of(case_with(fluid, disks)).density, 3.0);
+  EXPECT_DOUBLE_EQ(body_of(case_with(fluid, disks + "excluded_volume = 6.0\n")).density, 3.6);
+  EXPECT_DOUBLE_EQ(body_of(case_with(fluid, disks + chains)).density, 3.0);
+  EXPECT_DOUBLE_EQ(body_of(case_with("density = 3.0\na = 18.5\ngamma = 4.5\n",
+                                     disks + "excluded_volume = 6.0\n"))
+                       .density,
+                   3.6);
+}
+
+// Whole multiples of 1.5 cutoffs, about 4, 6 and 8 or 4, 5 and 6 times half a cutoff more than the reach.
+TEST(RadiusRun, EdgesAreWholeCellsOfThePressure) {
+  MeasuredBody m;
+  m.reach = 1.2;
+  EXPECT_EQ(m.default_edges(), (std::vector<double>{7.5, 9.0, 10.5}));
+  m.dimension = 2;
+  EXPECT_EQ(m.default_edges(), (std::vector<double>{7.5, 10.5, 13.5}));
+  m.cutoff = 2.0;
+  EXPECT_EQ(m.default_edges(), (std::vector<double>{9.0, 15.0, 18.0}));
 }
 
 }  // namespace

@@ -103,6 +103,28 @@ TEST(SuspensionReport, OfDisks) {
   EXPECT_NEAR(*s->kinds[0].peclet_of_unit_eta, 4.0 * pi * 1.44 * 0.1 / 0.5, 1e-12);
 }
 
+// A calibration is of its own density.
+TEST(SuspensionReport, ViscosityOfACalibrationAtAnotherDensity) {
+  const odpd::Calibration c{.file = "c.json",
+                            .dimension = 2,
+                            .density = 4.0,
+                            .mass = 0.0,
+                            .fluid = {.gamma = 8.0},
+                            .gamma_error = 0.1,
+                            .eta = 5.0,
+                            .eta_error = 0.1};
+  const Scene<2> scene(odpd::read_scene_settings<2>(
+      odpd::Config::from_text(
+          "[box]\nsize = [6.0, 6.0]\nperiodic = [true, true]\n[fluid]\ndensity = "
+          "4.0\na = 18.5\neta = 5.0\nkT = 1.0\ncalibration = \"c.json\"\n[start]\n"
+          "relax_sweeps = 0\n",
+          "test"),
+      c));
+  EXPECT_EQ(odpd::known_viscosity(scene, 4.0).source, "calibration");
+  EXPECT_DOUBLE_EQ(odpd::known_viscosity(scene, 4.0).eta, 5.0);
+  EXPECT_DOUBLE_EQ(odpd::known_viscosity(scene, 6.0).eta, 5.0 * 2.25);
+}
+
 TEST(SuspensionReport, BodiesMustLeaveRoom) {
   const auto message = [](const std::string& ball, const std::string& pair) -> std::string {
     try {

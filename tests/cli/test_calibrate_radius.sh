@@ -18,11 +18,11 @@ side = 0.2
 motion = "fixed"
 CASE
 sed -i 's/^size = .*/size = [5.0, 5.0]/' disks/case.toml
-quick=(--radius --boxes 4,5 --relative-error 0.05 --threads 1)
+quick=(--radius --boxes 4.5,6 --relative-error 0.05 --threads 1)
 
 expect_exit 0 "$odpd" calibrate disks "${quick[@]}" --out found
 expect_text "$out_text" 'fluid alone at density 4: eta = ' 'Hydrodynamic radius of disk: ' 'by torque: ' 'Excluded volume: ' '[[body]]' \
-  'hydrodynamic_radius = 0.' 'excluded_volume = 1.'
+  'hydrodynamic_radius = 0.' 'excluded_volume = '
 expect_text found/radius.json '"pure_fluid"' '"boxes"' '"result"' '"extrapolated"' '"torque_radius"'
 expect test "$(wc -l <found/radius.csv)" -eq 3
 
@@ -31,6 +31,8 @@ lines=()
 for key in hydrodynamic_radius excluded_volume; do
   lines+=(--set "body.0.$key=$(sed -n "s/^$key = \([0-9.]*\) .*/\1/p" "$out_text")")
 done
+# Seven particles of the fluid would take 1.75.
+expect awk "BEGIN { v = ${lines[3]##*=}; exit !(0.5 < v && v < 3.0) }"
 expect_exit 0 "$odpd" run disks --dry-run "${lines[@]}"
 expect_text "$out_text" 'Suspension' 'disk            1 bodies: number fraction = 0.06' 'hydrodynamic fraction = 0.0'
 expect_exit 0 "$odpd" run disks --dry-run
@@ -40,8 +42,14 @@ expect test -z "$(grep Suspension "$out_text")"
 cp found/radius.json first.json
 expect_exit 0 "$odpd" calibrate disks "${quick[@]}" --out found
 expect cmp found/radius.json first.json
-expect_exit 4 "$odpd" calibrate disks --radius --boxes 4,5 --relative-error 0.002 --limit-seconds 0.001 --threads 1 --out found
+expect_exit 4 "$odpd" calibrate disks --radius --boxes 4.5,6 --relative-error 0.002 --limit-seconds 0.001 --threads 1 --out found
 expect_text "$err_text" 'odpd: error: --limit-seconds' 'goes on from there'
+# What was there stays, also where other boxes are asked for.
+expect cmp found/radius.json first.json
+expect_exit 4 "$odpd" calibrate disks --radius --boxes 7.5,9 --relative-error 0.01 --limit-seconds 0.001 --threads 1 --out found
+expect cmp found/radius.json first.json
+expect_exit 0 "$odpd" calibrate disks --radius --boxes 6,7.5 --relative-error 0.05 --threads 1 --out found
+expect_text found/radius.json '"edge": 4.5' '"edge": 6.0' '"edge": 7.5' '"result"'
 expect test -z "$(ls -d found.1 2>/dev/null)"
 expect_exit 4 "$odpd" calibrate disks "${quick[@]}" --limit-seconds 0.001 --set fluid.gamma=5.0 --out found
 expect_text "$err_text" 'of another fluid or body'
@@ -52,6 +60,8 @@ expect_error 1 "$odpd" calibrate disks --radius plate -- "key 'body'" '--radius 
 expect_error 1 "$odpd" calibrate disks --radius --set body.0.motion=fixed -- 'there is none here'
 expect_error 1 "$odpd" calibrate disks --radius --set body.1.motion=free -- 'say which one' '--radius disk' 'disk, post are free'
 expect_error 1 "$odpd" calibrate disks --radius --boxes 2.5 -- --boxes 'an edge of 2.5' 'longer than 3'
+expect_exit 4 "$odpd" calibrate disks --radius --boxes 4.5,5 --limit-seconds 0.001 --out odd
+expect_text "$err_text" 'warning: --boxes: 5 is no whole multiple of 1.5' '6 is'
 expect_error 1 "$odpd" calibrate disks --radius --set fluid.mass=1.0 -- fluid.mass '--set fluid.mass=0.0'
 expect_error 1 "$odpd" calibrate disks --radius --set body.0.count=2 --set body.0.radius='[0.4, 0.5]' -- body.0.radius 'several radii'
 expect_error 1 "$odpd" calibrate disks --radius --eta 5.0 -- --radius --eta

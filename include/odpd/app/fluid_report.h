@@ -23,8 +23,8 @@ JsonObject fluid_json(const Scene<D>& scene, const Results& results);
 /// `viscosity` of the observer of that kind, else the first observable named `<observer>.viscosity`, else nullptr.
 const Scalar* measured_viscosity(const Results& results);
 
-/// The viscosity of the fluid as far as a case tells it, without a measurement, and where from: "calibration" (fluid.calibration),
-/// "expected" (of SDPD, by its table), "asked for" (SDPD that is not in it), or else "kinetic theory", at this density.
+/// The viscosity of the fluid as far as a case tells it, without a measurement, and where from: "calibration" (fluid.calibration, times the
+/// square of this density over its own), "expected" (of SDPD, by its table), "asked for" (SDPD that is not in it), or else "kinetic theory", at this density.
 struct KnownViscosity {
   double eta = 0.0;
   std::string source;

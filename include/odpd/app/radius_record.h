@@ -35,13 +35,13 @@ struct RadiusRecord {
   Measured excluded() const;
   /// What an earlier call measured in a cell of this edge; without samples where it did not.
   BodyInCell take(double edge) const;
-  void add(const BodyInCell& cell) { cells.push_back(cell); }
 
  private:
   Measured shared(Measured (RadiusRecord::*quantity)(const BodyInCell&) const) const;
 };
 
-/// radius.json and radius.csv of the directory; `complete`: with the result. Throws IoError.
+/// radius.json and radius.csv of the directory, of the cells and of earlier ones with other edges; `complete`: with the result, of the cells
+/// alone. Throws IoError.
 void write_radius(const std::filesystem::path& directory, const RadiusRecord& record,
                   bool complete);
 /// Takes what an earlier radius.json has. False, and nothing, where it is of another fluid or body. Throws IoError.
