@@ -15,7 +15,7 @@ viscosity eta is taken there. Then Hasimoto's images (1959), with the next order
 moments of the traction over the surface, a_i^2/3 of an ellipsoid, and b = (p^2 - 1)/(p^2 + 1) is what the images' strain adds to their
 vorticity (Jeffery). Terms that are cubic in orientation vanish along [1.618, 1, 0], the corner of an icosahedron; the next are of order L^-6.
 
-The body's surface is `delta` outside of its outermost particles: R + delta, length + 2 delta. `delta` is fitted to the four
+The body's surface is `delta` outside of its outermost particles: R + delta, length + 2 delta, R = 0 for a line. `delta` is fitted to the four
 mobilities of each body, all with the same weight; that of the sphere is then used for all.
 """
 import csv
@@ -65,11 +65,11 @@ class Body:
         summary, values = observed(run)
         keys = case["body"][0]
         self.shape = keys["shape"]
-        self.R = keys["radius"]
+        self.R = keys.get("radius", 0.0)  # 0: a line of particles, which has no rotation about itself
         self.half_length = {"rod": keys.get("length", 0) / 2, "ellipsoid": self.R * keys.get("aspect", 1)}.get(self.shape, self.R)
         self.L = case["box"]["size"][0]
         n, self.eta = fluid.at_pressure(values["pressure"])
-        mu = lambda kind, c: self.eta * values[f"mobility.body.{kind}.{c}"]
+        mu = lambda kind, c: self.eta * (values[f"mobility.body.{kind}.{c}"] or math.nan)
         # Where the body's volume is given, the observer spreads the force by volume itself.
         self.frame = 1.0 if "excluded_volume" in keys else (summary["particles"] / (n * self.L**3)) ** 2
         across = lambda kind: 0.5 * (mu(kind, "y") + mu(kind, "z"))
@@ -97,8 +97,8 @@ class Body:
         return self.alone(delta) / self.by_theory(delta)
 
     def fitted(self):
-        deltas = np.arange(-0.2, 0.8, 0.001)
-        return min(deltas, key=lambda d: np.sum(np.log(self.over_theory(d)) ** 2))
+        deltas = np.arange(max(-0.2, 0.2 - self.R), 0.8, 0.001)
+        return min(deltas, key=lambda d: np.nansum(np.log(self.over_theory(d)) ** 2))
 
 
 def with_error(values):
@@ -109,6 +109,8 @@ def with_error(values):
 
 
 def printed(mean, error):
+    if math.isnan(mean):
+        return "-"
     return f"{mean:.3f}" if math.isnan(error) else f"{mean:.3f}({max(round(1000 * error), 1):.0f})"
 
 
@@ -154,7 +156,7 @@ def main():
     with (out / "theory.csv").open("w") as file:
         rows = csv.writer(file)
         rows.writerow(["p"] + [f"{shape}_{k}" for shape in ("rod", "spheroid") for k in ("F_par", "F_perp", "T_perp")])
-        for p in np.geomspace(1, 10, 91):
+        for p in np.geomspace(1, 12, 97):
             rows.writerow([p] + [f[k] for f in (theory.rod(p), theory.perrin(p)) for k in (0, 1, 3)])
 
 

@@ -11,7 +11,7 @@ their drag is computed, by
 with the unknown f constant on N patches of equal area A/N around the sites that odpd puts on such a body
 (include/odpd/scene/body_shapes.h). The patch around a site itself counts as a disk of radius rho = sqrt(A/(pi N)): 3 pi rho along its
 plane and 2 pi rho across, over 8 pi eta. The error is linear in N^-1/2, and a straight line through N = 400, 800, 1600
-ends within 1e-3 of the closed forms for spheroids, which `--check` shows.
+ends within 2e-3 of the closed forms for spheroids up to p = 14, which `--check` shows.
 
 Resistances are given over 6 pi eta R (forces) and 8 pi eta R^3 (torques), R half the width: F_par, F_perp, T_par, T_perp,
 along the axis and across it.
@@ -101,6 +101,7 @@ TABLE = {
     5.0: (2.0392, 2.6245, 5.0896, 31.1921),
     7.0: (2.4528, 3.2857, 7.0996, 71.5434),
     10.0: (3.0234, 4.2052, 10.1070, 176.0871),
+    14.0: (3.7254, 5.3483, 14.1203, 418.5426),
 }
 
 
