@@ -81,13 +81,13 @@ typename Grid<D>::Counts read_cells(const ObserverEntry<D>& entry, double fewest
 }
 
 template <int D>
-double read_r_max(const ObserverEntry<D>& entry) {
+double read_r_max(const ObserverEntry<D>& entry, bool far) {
   const Box<D>& box = entry.scene.box();
   double most = std::numeric_limits<double>::infinity();
   for (int c = 0; c < D; ++c)
     if (box.is_periodic(c)) most = std::min(most, 0.5 * box.size[c]);
-  const double r_max =
-      entry.config.positive("r_max", std::min(most, 2.0 * entry.scene.model().cutoff()));
+  const double near = std::min(most, 2.0 * entry.scene.model().cutoff());
+  const double r_max = entry.config.positive("r_max", far && std::isfinite(most) ? most : near);
   if (r_max > most)
     entry.config.fail(
         "r_max",
@@ -154,7 +154,7 @@ void require_two_steps(const Config& config, double window, double dt) {
   template typename Grid<D>::Counts read_cells<D>(const ObserverEntry<D>&, double);     \
   template void refuse_frozen<D>(const ObserverEntry<D>&);                              \
   template bool read_incompressible<D>(const ObserverEntry<D>&);                        \
-  template double read_r_max<D>(const ObserverEntry<D>&);
+  template double read_r_max<D>(const ObserverEntry<D>&, bool);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)
 #undef ODPD_INSTANTIATE

@@ -46,9 +46,9 @@ std::unique_ptr<Observer<D>> Rdf<D>::make(const ObserverEntry<D>& entry) {
   ObserverSettings settings = entry.settings(20);
   const Config& config = entry.config;
   RdfSettings rdf;
-  rdf.r_max = read_r_max(entry);
-  rdf.bins = config.positive_integer("bins", rdf.bins);
   rdf.of_bodies = config.choice("of", {"particles", "bodies"}, "particles") == "bodies";
+  rdf.r_max = read_r_max(entry, rdf.of_bodies);
+  rdf.bins = config.positive_integer("bins", rdf.bins);
   if (rdf.of_bodies && entry.scene.settings().bodies.empty())
     config.fail("of", "the scene has no [[body]]");
   if (config.has("reference")) {

@@ -118,46 +118,6 @@ TYPED_TEST(StructureTest, OnePairFillsOneBin) {
   }
 }
 
-// Centres, 1.1 apart through the border, of dimers of two kinds, the other way round, in a fluid that does not count.
-TYPED_TEST(StructureTest, CentresOfBodies) {
-  constexpr int D = TypeParam::D;
-  const Vec<D> size = support::uniform_vec<D>(4.0);
-  auto s = records::periodic<D>(4.0, support::random_points<D>(Vec<D>{}, size, 40, 0));
-  Vec<D> half{}, at = support::uniform_vec<D>(0.1);
-  half[0] = 0.3;
-  odpd::BodySettings<D> dimer;
-  dimer.shape = {half, -1.0 * half};
-  dimer.name = "a";
-  dimer.positions = {at};
-  at[0] = 3.0;
-  dimer.positions.push_back(at);
-  s.bodies.push_back(dimer);
-  dimer.name = "b";
-  dimer.shape = {-1.0 * half, half};
-  at[1] += 1.5;
-  dimer.positions = {at};
-  s.bodies.push_back(dimer);
-  const Scene<D> scene(s);
-  Rdf<D> rdf({.kind = "rdf", .name = "g"}, {.r_max = 2.0, .bins = 5, .of_bodies = true}, scene);
-  StepRecord<D> record = records::record(scene);
-  record.start.arms.resize(record.start.position.size());
-  for (const auto& body : scene.particles().bodies)
-    for (const std::int64_t id : body.members)
-      record.start.arms[static_cast<std::size_t>(id)] = scene.box().separation(
-          scene.particles().position[static_cast<std::size_t>(id)], body.pose.centre);
-  rdf.measure(Clock{}, scene.particles(), record);
-  EXPECT_EQ(rdf.series_columns().at(5), "g_a_b_0");
-  const auto row = rdf.series_row();
-  const auto shell = [](double k) { return ball<D>(0.4 * (k + 1.0)) - ball<D>(0.4 * k); };
-  for (std::size_t k = 0; k < 5; ++k) {
-    EXPECT_NEAR(row[k], k == 2 ? std::pow(4.0, D) / shell(2.0) : 0.0, 1e-10) << "a - a " << k;
-    EXPECT_NEAR(row[5 + k], k >= 3 ? std::pow(4.0, D) / (2.0 * shell(static_cast<double>(k))) : 0.0,
-                1e-10)
-        << "a - b " << k;
-    EXPECT_TRUE(std::isnan(row[10 + k])) << "there is one b";
-  }
-}
-
 // A restart may bring other particles than the scene began with.
 TEST(Rdf, CountsTheParticlesItIsGiven) {
   auto s = records::periodic<2>(

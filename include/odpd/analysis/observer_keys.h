@@ -29,9 +29,9 @@ std::vector<int> read_directions(const Config& config, const std::vector<int>& f
 template <int D>
 typename Grid<D>::Counts read_cells(const ObserverEntry<D>& entry, double fewest = 1.0);
 
-/// `r_max` of distances between particles: at most half the shortest periodic edge, by default two cutoffs.
+/// `r_max` of distances between particles: at most half the shortest periodic edge, by default two cutoffs, or if `far` the most.
 template <int D>
-double read_r_max(const ObserverEntry<D>& entry);
+double read_r_max(const ObserverEntry<D>& entry, bool far = false);
 
 /// Solves that take the noise out.
 struct ControlKeys {
