@@ -45,11 +45,13 @@ study rods
 expect test "$(grep -c 'blew up' rods/study.csv)" -eq 0
 study sphere_resolution
 expect test "$(grep -c 'blew up' sphere_resolution/study.csv)" -eq 0
+study sphere_fractions
+expect test "$(grep -c 'blew up' sphere_fractions/study.csv)" -eq 0
 study spring_suspension_3d
 expect_verdict spring_suspension_3d '0.1837,constrained,shear' viscosity biased
 for name in integrators_2d small_mass tolerance stability_dt_a stability_low_density cylinder_drag \
   incompressibility incompressibility_repulsion incompressibility_alpha colloid_kinds cylinder_levels \
-  sdpd_resolution rods sphere_resolution spring_suspension_3d; do
+  sdpd_resolution rods sphere_resolution sphere_fractions spring_suspension_3d; do
   expect test -s "$name/study.html"
   expect test -z "$(grep ',missing,' "$name/study.csv")"
 done
