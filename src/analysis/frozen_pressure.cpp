@@ -14,7 +14,7 @@ namespace odpd {
 
 namespace {
 
-constexpr int most_iterations = 200;
+constexpr int most_cg_steps = 200;
 constexpr double mass_tolerance = 0.1;
 // Of `tolerance`. Changes of the value fall to a third or less with each iteration, so that what is left is of the last one's size.
 constexpr double value_tolerance = 0.2;
@@ -204,7 +204,7 @@ std::vector<double> FrozenPressure<D>::preconditioned(const std::vector<double>&
   std::vector<double> z(r.size()), left = r, y = by_diagonal(left), direction = y;
   double product = fixed_dot(left, y);
   const double wanted = mass_tolerance * mass_tolerance * product;
-  for (int n = 0; n < most_iterations && product > wanted; ++n) {
+  for (int n = 0; n < most_cg_steps && product > wanted; ++n) {
     std::vector<double> x = at_particles(direction);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] *= weight_[i];
     const std::vector<double> M = on_nodes(x);
@@ -236,7 +236,7 @@ auto FrozenPressure<D>::hold(std::vector<double>& rates, std::vector<Vec<D>>& ve
     const double down = fixed_dot(rates, direction);
     const double step = -down / fixed_dot(direction, change);
     gained += step * down;
-    if (!(step > 0.0 && gained < too_much * value) || held.solves > most_iterations)
+    if (!(step > 0.0 && gained < too_much * value) || held.solves > most_cg_steps)
       throw SolverError(fmt::format(
           "no pressure keeps the fluid from compression in what the configuration answers to a "
           "load (solve {}): some of its {} free particles cannot give way on a grid of {} nodes, "
