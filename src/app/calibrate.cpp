@@ -134,7 +134,10 @@ RunLock prepare_directory(const fs::path& directory, CalibrationRecord& record) 
 class Calibrator {
  public:
   Calibrator(const CalibrateOptions& options, CalibrationRecord& record, fs::path file)
-      : options_(options), record_(record), file_(std::move(file)) {}
+      : options_(options),
+        record_(record),
+        file_(std::move(file)),
+        stopped_(options.limit_seconds) {}
 
   /// The friction, or nothing where it ended early.
   bool search() {
@@ -190,7 +193,7 @@ class Calibrator {
                            .relative_error = relative_error,
                            .seed = record_.fluid.seed + record_.measurements.size(),
                            .threads = options_.threads};
-    ViscosityMeasurement m = measure_viscosity(record_.fluid, run, [&] { return stopped(); });
+    ViscosityMeasurement m = measure_viscosity(record_.fluid, run, stopped_);
     m.doubled = doubled;
     if (m.time > 0.0) {
       record_.measurements.push_back(m);
@@ -203,15 +206,10 @@ class Calibrator {
     return m.complete;
   }
 
-  bool stopped() const {
-    return interrupted() ||
-           (options_.limit_seconds > 0.0 && watch_.seconds() > options_.limit_seconds);
-  }
-
   const CalibrateOptions& options_;
   CalibrationRecord& record_;
   fs::path file_;
-  Stopwatch watch_;
+  EarlyEnd stopped_;
 };
 
 // The measurement at twice the rate against eta, and what that says of the rate itself, if the loss goes with its square.

@@ -74,7 +74,10 @@ constexpr std::int64_t least_samples = 32;
 class RadiusCalibrator {
  public:
   RadiusCalibrator(const CalibrateRadiusOptions& options, RadiusRecord& record, fs::path directory)
-      : options_(options), record_(record), directory_(std::move(directory)) {}
+      : options_(options),
+        record_(record),
+        directory_(std::move(directory)),
+        stopped_(options.limit_seconds) {}
 
   /// False where it ended early.
   bool measure() {
@@ -88,8 +91,7 @@ class RadiusCalibrator {
     if (!known(record_.fluid)) {
       log_info("measuring the fluid alone");
       // What is there already stays until there is better.
-      const PureFluid fluid =
-          measure_pure_fluid(body, options_.threads, known, [&] { return stopped(); });
+      const PureFluid fluid = measure_pure_fluid(body, options_.threads, known, stopped_);
       if (!known(fluid)) return false;
       record_.fluid = fluid;
     }
@@ -101,7 +103,7 @@ class RadiusCalibrator {
     double excluded = first_guess();
     const double goal =
         of_boxes * record_.relative_error * std::sqrt(static_cast<double>(record_.edges.size()));
-    if (stopped()) return false;
+    if (stopped_()) return false;
     for (const double edge : record_.edges) {
       if (!measure_in(edge, excluded, goal)) return false;
       excluded = record_.excluded().value;
@@ -119,7 +121,7 @@ class RadiusCalibrator {
     constexpr std::int64_t some = 8;
     const BodyInCell trial = measure_body(
         body, record_.edges.front(), ball, options_.threads,
-        [](const BodyInCell& c) { return c.samples >= some; }, [&] { return stopped(); });
+        [](const BodyInCell& c) { return c.samples >= some; }, stopped_);
     return trial.samples > 0 ? std::clamp(excluded_volume(trial).value, 0.0, ball) : ball;
   }
 
@@ -137,8 +139,7 @@ class RadiusCalibrator {
     const bool there = known(cell);
     if (!there) {
       log_info(fmt::format("measuring in a box with an edge of {:.6g}", edge));
-      cell = measure_body(record_.body, edge, excluded, options_.threads, known,
-                          [&] { return stopped(); });
+      cell = measure_body(record_.body, edge, excluded, options_.threads, known, stopped_);
     }
     if (!complete) return false;
     if (std::isnan(record_.drag(cell).value))
@@ -157,15 +158,10 @@ class RadiusCalibrator {
     return true;
   }
 
-  bool stopped() const {
-    return interrupted() ||
-           (options_.limit_seconds > 0.0 && watch_.seconds() > options_.limit_seconds);
-  }
-
   const CalibrateRadiusOptions& options_;
   RadiusRecord& record_;
   fs::path directory_;
-  Stopwatch watch_;
+  EarlyEnd stopped_;
 };
 
 std::string conclusion(const RadiusRecord& r) {
