@@ -50,7 +50,7 @@ std::unique_ptr<Observer<D>> Rdf<D>::make(const ObserverEntry<D>& entry) {
   rdf.r_max = read_r_max(entry, rdf.of_bodies);
   rdf.bins = config.positive_integer("bins", rdf.bins);
   if (rdf.of_bodies && entry.scene.settings().bodies.empty())
-    config.fail("of", "the scene has no [[body]]");
+    config.fail("of", "the scene has no [[body]] whose centres could count: leave `of` out");
   if (config.has("reference")) {
     std::optional<RdfComparison>& comparison = rdf.comparison;
     comparison = {config.number("reference"), config.non_negative("compare_from", 0.0),

@@ -188,7 +188,7 @@ CLI::App* add_calibrate(CLI::App& app, CalibrateCommand& options, bool& quiet) {
       ->needs(options.radius);
   command->add_option(
       "--out", calibrate.out,
-      "output directory [runs/<case>-calibrate, -radius]; viscosities of the same that are there "
+      "output directory [runs/<case>-calibrate, -radius]; measurements of the same that are there "
       "count");
   command->add_option("--threads", calibrate.threads, "threads; never changes results")
       ->check(CLI::Range(0, 4096))

@@ -1,9 +1,9 @@
 #pragma once
-// Radial distribution function of the free particles, per pair of species A, B:
+// Radial distribution function of the free particles, per pair of species A, B, or of the centres of bodies, per pair of [[body]]:
 //
 //   g_AB(r) = V <pairs AB with distance in the bin> / (pairs of particles AB in all * volume of the shell)
 //
-// or, asked for, of the centres of bodies, per pair of [[body]]. With N(N-1)/2 pairs for A = B, so that an ideal gas has g = 1 at any N; undefined (NaN, and a note) where there is no such pair.
+// with N(N-1)/2 pairs for A = B, so that an ideal gas has g = 1 at any N; undefined (NaN, and a note) where there is no such pair.
 // Distances up to half the shortest periodic edge. Between walls V is the volume between their surfaces, and shells count in full
 // also where a wall cuts them: an ideal gas between walls H apart has not 1 but 1 - r/(2 H) in 3D, 1 - 2 r/(pi H) in 2D (r < H).
 // Where g has a value to be compared with (1 in an ideal gas), over the bins whose middle lies between two distances:
