@@ -203,6 +203,21 @@ TEST(MobilityOfARod, HasItsOwnAxes) {
   EXPECT_GT(std::abs(mean(space, "translation.x") - along), 1e-3 * along);
 }
 
+// One along an axis of space does not turn about it, which is a mobility of 0 along this axis and no undefined mean.
+TEST(MobilityOfARod, DoesNotTurnAboutItsLine) {
+  auto settings = some_fluid<3>();
+  settings.bodies = {body_of<3>({{{-0.5, 0.0, 0.0}}, {{0.0, 0.0, 0.0}}, {{0.5, 0.0, 0.0}}}, 1)};
+  settings.bodies[0].positions = {support::uniform_vec<3>(1.1)};
+  OneStep<3> step(settings);
+  const auto results = measured<3>(step, {.bodies = {0}, .molecules = {}, .tolerance = 1e-10});
+  const auto mean = [&](const std::string& axis) {
+    return records::mean(results, "m.body.rotation" + axis);
+  };
+  EXPECT_EQ(mean(".x"), 0.0);
+  EXPECT_GT(mean(".y"), 0.0);
+  EXPECT_NEAR(mean(""), 0.5 * (mean(".y") + mean(".z")), 1e-12);
+}
+
 /// Particles on the diagonal of the xy plane, a ring through the corner of the box.
 template <int D>
 odpd::SceneSettings<D> ring() {

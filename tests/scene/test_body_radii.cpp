@@ -10,6 +10,7 @@
 
 #include "cases.h"
 #include "odpd/scene/body_room.h"
+#include "odpd/scene/body_shape_keys.h"
 
 namespace {
 
@@ -73,6 +74,19 @@ TEST(BodyRadii, FollowFromTheSeedAndTheEntry) {
   EXPECT_EQ(radii_of(two.bodies[0]), five);
   for (std::size_t k = 0; k < 5; ++k)
     EXPECT_GT(std::abs(five[k] - radii_of(two.bodies[1])[k]), 1e-4);
+}
+
+// Body 2751676 of seed 1 is the first whose number is more than five deviations, the whole mean, below.
+TEST(BodyRadii, ArePositiveFarOutInTheTailToo) {
+  constexpr std::uint64_t seed = 1, rare = 2751676;
+  ASSERT_LT(odpd::CounterRandom(seed, odpd::Stream::body_sizes).normal(0, 0, 0, rare), -5.0);
+  const auto config =
+      odpd::Config::from_text("radius = { mean = 1.0, deviation = 0.2 }\n", "body.toml");
+  odpd::ShapeKeys keys;
+  keys.has_radius = true;
+  const odpd::Radii radii(config, keys, seed, 0);
+  EXPECT_GT(radii.of(rare), 0.0);
+  EXPECT_NE(radii.of(rare), radii.of(rare + 1));
 }
 
 // Each has the sites that its own surface takes, and each stands where and as large as the list says.
