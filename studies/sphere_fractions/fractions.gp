@@ -19,5 +19,5 @@ plot rows("mobility.sphere.translation") using 1:($5/D0 + box($1)):($6/D0) with 
      1 - 1.8315*x*(1 + .12*x - .70*x**2) title "Stokes flow, fit", (1 - 1.56*x)*(1 - .27*x) dt 2 title "(1 - 1.56 phi)(1 - .27 phi)"
 R0 = 1/(8*pi*eta0*a**3)
 set key bottom left
-plot rows("mobility.sphere.rotation") using 1:($5/R0 + $1/N($1)/eta($1)):($6/R0) with yerrorbars pt 7 title "rotation", \
+plot rows("all.sphere.rotation") using 1:($5/R0 + $1/N($1)/eta($1)):($6/R0) with yerrorbars pt 7 title "rotation", \
      1 - .631*x - .726*x**2 title "1 - .631 phi - .726 phi^2"

@@ -20,7 +20,7 @@ set multiplot layout 1,2
 set ylabel "above theory (%)"; set yrange [-5:16]
 plot rows("high-frequency-viscosity.eta") using ($1-.03):(error_of($5/eta0, eta($1))):(100*$6/eta0/eta($1)) with yerrorbars pt 7 title "viscosity", \
      rows("mobility.sphere.translation") using 1:(error_of($5/D0($1) + box($1), Dt($1))):(100*$6/D0($1)/Dt($1)) with yerrorbars pt 5 title "translation", \
-     rows("mobility.sphere.rotation") using ($1+.03):(error_of($5/R0($1) + p($1)/N($1)/eta($1), Dr($1))):(100*$6/R0($1)/Dr($1)) with yerrorbars pt 9 title "rotation", \
+     rows("all.sphere.rotation") using ($1+.03):(error_of($5/R0($1) + p($1)/N($1)/eta($1), Dr($1))):(100*$6/R0($1)/Dr($1)) with yerrorbars pt 9 title "rotation", \
      0 with lines lc rgb "black" dt 2 notitle
 set ylabel "processor seconds"; set logscale y; set yrange [0.5:10000]; set key bottom right
 plot rows("high-frequency-viscosity.eta") using 1:13 with linespoints pt 7 title "a unit of time", \
