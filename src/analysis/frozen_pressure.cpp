@@ -224,24 +224,25 @@ std::vector<double> FrozenPressure<D>::preconditioned(const std::vector<double>&
 template <int D>
 auto FrozenPressure<D>::hold(std::vector<double>& rates, std::vector<Vec<D>>& velocity,
                              double value, double tolerance) const -> Held {
-  Held held{.pressure = std::vector<double>(nodes()), .work = 0.0, .solves = 0};
+  Held held{.pressure = std::vector<double>(nodes()), .work = 0.0};
+  int solves = 0;
   drop_whole(rates);
   std::vector<double> z = preconditioned(rates), direction = z;
   double product = fixed_dot(rates, z), gained = 0.0;
   int small = 0;
   while (product > 0.0 && small < 2) {
     const std::vector<Vec<D>> u = record_.respond(push(direction), tolerance);
-    ++held.solves;
+    ++solves;
     const std::vector<double> change = rates_of(u);
     const double down = fixed_dot(rates, direction);
     const double step = -down / fixed_dot(direction, change);
     gained += step * down;
-    if (!(step > 0.0 && gained < too_much * value) || held.solves > most_cg_steps)
+    if (!(step > 0.0 && gained < too_much * value) || solves > most_cg_steps)
       throw SolverError(fmt::format(
           "no pressure keeps the fluid from compression in what the configuration answers to a "
           "load (solve {}): some of its {} free particles cannot give way on a grid of {} nodes, "
           "or solves to {:.3g} are too loose; use a smaller tolerance, or incompressible = false",
-          held.solves, std::count(free_.begin(), free_.end(), 1), nodes(), tolerance));
+          solves, std::count(free_.begin(), free_.end(), 1), nodes(), tolerance));
     parallel_for(std::ssize(velocity),
                  [&](std::int64_t i) { velocity[index(i)] += step * u[index(i)]; });
     const std::vector<double> before = rates;

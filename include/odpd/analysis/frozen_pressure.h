@@ -60,7 +60,6 @@ class FrozenPressure {
   struct Held {
     std::vector<double> pressure;  ///< p
     double work = 0.0;             ///< p . rates that are left
-    int solves = 0;
   };
   /// Adds to `velocity`, on entry u without a pressure, what p moves, until `rates`, on entry C A + G^T u, are gone so far that the
   /// value hardly changes, but for that of the whole: twice in turn by less than a fifth of `tolerance` times `value`. Solves to `tolerance`. At 0.01 some 4
