@@ -8,6 +8,7 @@
 #include "odpd/app/report.h"
 #include "odpd/app/suspension_report.h"
 #include "odpd/core/parallel.h"
+#include "odpd/scene/spin_keys.h"
 
 namespace odpd {
 
@@ -36,6 +37,8 @@ std::string modelled_motion(const Simulation<D>& simulation) {
       mass > 0.0 ? fmt::format("mass = {}", mass) : "mass = 0: every step is a balance of forces");
   out += line(scene.settings().zeta_0 > 0.0, "uniform drag",
               scene.settings().zeta_0 > 0.0 ? "zeta_0 > 0, with its noise" : "none given");
+  const std::string spins = spins_text(scene.settings().species);
+  out += line(!spins.empty(), "spin", spins.empty() ? "no species has a lever_radius" : spins);
   const int solves = simulation.integrator().solves();
   const double observed = solves_of_observers(simulation);
   out += line(solves > 0, "solves per step",

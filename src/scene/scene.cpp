@@ -8,6 +8,7 @@
 #include "odpd/core/index.h"
 #include "odpd/scene/body_places.h"
 #include "odpd/scene/fill.h"
+#include "odpd/scene/spin_keys.h"
 #include "odpd/scene/start_bonds.h"
 
 namespace odpd {
@@ -34,6 +35,7 @@ Scene<D>::Scene(SceneSettings<D> settings, const Communicator& ranks)
       pair_moments_(odpd::pair_moments(*model_, settings_.species.size())),
       largest_kT_(odpd::largest_kT(pair_moments_)) {
   particles_.share_among(ranks);
+  particles_.spin_of_species = spins_of(settings_.species);
   place_walls(settings_, particles_);
   particles_.walls = static_cast<std::int32_t>(settings_.walls.size());
   body_kind_ = place_bodies(settings_.bodies, settings_.box, fluid_low(), fluid_high(),

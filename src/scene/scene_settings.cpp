@@ -9,6 +9,7 @@
 #include "odpd/core/index.h"
 #include "odpd/scene/body_places.h"
 #include "odpd/scene/drive_keys.h"
+#include "odpd/scene/spin_keys.h"
 #include "odpd/scene/vector_key.h"
 #include "odpd/scene/wall_keys.h"
 
@@ -343,6 +344,7 @@ SceneSettings<D> read_scene_settings(const Config& config,
   }
   read_molecules(config, scene);
   read_fluid(config, calibration, scene);
+  read_spins(config, scene);
   complete_walls(config, scene);
   if (scene.start_region)
     check_start_region(config.table("start").table("region"), *scene.start_region,

@@ -12,6 +12,7 @@
 #include "odpd/particles/field_table.h"
 #include "odpd/particles/group.h"
 #include "odpd/particles/rigid_body.h"
+#include "odpd/particles/spin.h"
 
 namespace odpd {
 
@@ -34,12 +35,18 @@ class Particles {
   std::vector<std::int64_t> id;
   std::vector<std::int32_t> species;  ///< index into the scene's species
   std::vector<Group> group;           ///< who moves it
+  std::vector<Spin> spin_of_species;  ///< by species; empty: nobody spins
   std::int32_t walls = 0;  ///< of the scene: bodies of known motion are counted behind them (Group)
   std::vector<RigidBody<D>> bodies;  ///< those of unknown motion first
 
   std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
   bool is_free(std::size_t i) const { return group[i].is_free(); }
   bool is_known(std::size_t i) const { return group[i].is_known(); }
+  /// It has an angular velocity of its own. One that moves with a wall or a body has that of the wall (0) or body.
+  bool spins(std::size_t i) const {
+    return !spin_of_species.empty() && is_free(i) &&
+           spin_of_species[index(species[i])].lever_radius > 0.0;
+  }
   /// Rigid body of a particle, -1 when it belongs to none.
   std::int32_t body_of(std::size_t i) const { return bodies.empty() ? -1 : group[i].body(walls); }
   /// Of all ranks, which call it together.

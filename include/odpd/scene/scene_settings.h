@@ -21,6 +21,9 @@ struct SpeciesSettings {
   std::string name = "fluid";
   double fraction = 1.0;    ///< of the fluid's particles; used where count < 0
   std::int64_t count = -1;  ///< exact number of fluid particles; -1: by fraction
+  // Of Spin (particles/spin.h).
+  double lever_radius = 0.0;  ///< length; 0: it does not spin
+  double moment = 0.0;        ///< moment of inertia (mass length^2)
 };
 
 /// A sheet of frozen particles parallel to a wall's surface.
