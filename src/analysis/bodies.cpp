@@ -131,7 +131,7 @@ void Bodies<D>::add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& nois
                           std::vector<double>& sample) const {
   std::vector<Vec<D>> force(stage.position.size());
   add_conservative_forces(stage.network, force);
-  add_friction_forces<D>(stage.network, stage.velocity, force);
+  add_friction_forces<D>(stage.network, stage.velocity, force, stage.spin);
   add_sliding_friction(stage.network, force);
   for (std::size_t b = 0; b < kind_.size(); ++b) {
     Vec<D> total{}, moment{};

@@ -30,7 +30,7 @@ ForceAnswer<D> answer_to_force(const Particles<D>& particles, const StepRecord<D
                                const FrozenPressure<D>* pressure) {
   const PairNetwork<D>& network = record.start.network;
   ForceAnswer<D> answer;
-  answer.velocity = record.respond(force, tolerance);
+  answer.velocity = record.respond({force}, tolerance).velocity;
   std::vector<Vec<D>>& w = answer.velocity;
   const Share own = particles.owned();
   double of_rates = 0.0;
@@ -72,7 +72,7 @@ FlowAnswer answer_to_flow(const Particles<D>& particles, const StepRecord<D>& re
     friction[k] = -1.0 * friction_of<D>(network, k, affine(k));
   add_edge_forces<D>(network, friction, load);
   // u = -w, what the particles move besides the flow.
-  std::vector<Vec<D>> u = record.respond(load, tolerance);
+  std::vector<Vec<D>> u = record.respond({load}, tolerance).velocity;
   for (Vec<D>& v : u) v = -1.0 * v;
   const auto slip = [&](std::size_t k) {
     return affine(k) + u[index(network.i[k])] - u[index(network.j[k])];

@@ -100,7 +100,7 @@ void FrozenPressure<D>::find_tensions(const Particles<D>& particles, double reac
     weight_[i] = sum * sum;
   });
   add_edge_forces<D>(network, tension_, force);
-  const std::vector<Vec<D>> w = record_.respond(force, tolerance);
+  const std::vector<Vec<D>> w = record_.respond({force}, tolerance).velocity;
   parallel_for(network.size(), [&](std::int64_t edge) {
     const auto k = index(edge), i = index(network.i[k]), j = index(network.j[k]);
     tension_[k] += friction_of<D>(network, k, w[i] - w[j]);
@@ -231,7 +231,7 @@ auto FrozenPressure<D>::hold(std::vector<double>& rates, std::vector<Vec<D>>& ve
   double product = fixed_dot(rates, z), gained = 0.0;
   int small = 0;
   while (product > 0.0 && small < 2) {
-    const std::vector<Vec<D>> u = record_.respond(push(direction), tolerance);
+    const std::vector<Vec<D>> u = record_.respond({push(direction)}, tolerance).velocity;
     ++solves;
     const std::vector<double> change = rates_of(u);
     const double down = fixed_dot(rates, direction);

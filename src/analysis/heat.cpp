@@ -60,20 +60,20 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
   parallel_for(network.size(), [&](std::int64_t edge) {
     const auto k = index(edge);
     if (!network.counts(k)) return;
-    const Vec<D> slip = network.slip(k, stage.velocity);
+    const Vec<D> slip = network.slip(k, stage.velocity, stage.spin);
     friction[k] = -dot(friction_of(network, k, slip), slip);
   });
 
   std::vector<Vec<D>> force(stage.position.size());
   if (!record.edge_noise.empty())
     add_edge_forces<D>(record.start.network, record.edge_noise, force);
-  add_friction_forces<D>(network, stage.velocity, force);
+  add_friction_forces<D>(network, stage.velocity, force, stage.spin);
   add_sliding_friction(network, force);
   double walls = 0.0, driven = 0.0, shear = 0.0, rate = 0.0;
   for (std::size_t k = 0; k < network.slip_0.size(); ++k) {
     if (!network.counts(k)) continue;
     const Vec<D> pair = network.push(k);
-    const Vec<D> drag = friction_of(network, k, network.slip(k, stage.velocity));
+    const Vec<D> drag = friction_of(network, k, network.slip(k, stage.velocity, stage.spin));
     rate -= dot(pair, network.slip_0[k]);
     shear -= dot(pair + drag, network.slip_0[k]);
   }
@@ -93,7 +93,7 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
   if (own.ranks->rank() == 0) driven += on_bodies;  // every rank knows them
   for (std::size_t k = 0; k < noise.size(); ++k)
     if (record.start.network.counts(k))
-      noise[k] = -dot(record.edge_noise[k], record.start.network.slip(k, velocity));
+      noise[k] = -dot(record.edge_noise[k], record.start.network.slip(k, velocity, stage.spin));
   std::array<double, 6> sums{walls, driven, shear, rate, fixed_sum(friction), fixed_sum(noise)};
   own.ranks->sum(std::span(sums));
   std::tie(walls, driven, shear, rate) = std::tie(sums[0], sums[1], sums[2], sums[3]);

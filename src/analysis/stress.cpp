@@ -102,7 +102,8 @@ void add_stage_stress(const StressGrid<D>& grid, const ForcePoints<D>& points,
     const Vec<D> push = network.push(k);
     if (push != Vec<D>{}) grid.add_line(conservative_part, r, arm, arm, weight * push, into);
     grid.add_line(friction_part, r, arm, arm,
-                  weight * friction_of<D>(network, k, network.slip(k, stage.velocity)), into);
+                  weight * friction_of<D>(network, k, network.slip(k, stage.velocity, stage.spin)),
+                  into);
   };
   add_in_blocks(network.i.size(), grid.width(), edge, sum);
 }

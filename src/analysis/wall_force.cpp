@@ -37,7 +37,7 @@ void WallForce<D>::add_stage(const Particles<D>& particles, const Stage<D>& stag
   const Share own = particles.owned();
   std::vector<Vec<D>> force = noise_force;
   add_conservative_forces(stage.network, force);
-  add_friction_forces<D>(stage.network, stage.velocity, force);
+  add_friction_forces<D>(stage.network, stage.velocity, force, stage.spin);
   add_sliding_friction(stage.network, force);
   for (std::size_t i = 0; i < force.size(); ++i) {
     if (!particles.is_known(i) || particles.body_of(i) >= 0 || !own.owns(i)) continue;

@@ -10,6 +10,7 @@
 #include "odpd/core/log.h"
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
+#include "odpd/pairs/levers.h"
 #include "odpd/pairs/noise.h"
 
 namespace odpd {
@@ -22,11 +23,24 @@ std::vector<double> resisted(const Stage<D>& stage, const DofMap<D>& dofs,
                              const std::vector<double>& q, const Add& add) {
   std::vector<Vec<D>> velocity, force(stage.position.size());
   dofs.scatter(stage.arms, q, force, velocity);
-  add(stage.network, velocity, force);
+  std::vector<Vec<D>> spin, torque;
+  if (dofs.any_spin()) {
+    torque.resize(force.size());
+    dofs.scatter_spins(q, torque, spin);
+  }
+  add(stage.network, velocity, spin, force, torque);
   std::vector<double> f;
-  dofs.gather(stage.arms, force, f);
+  dofs.gather(stage.arms, force, torque, f);
   for (double& value : f) value = -value;
   return f;
+}
+
+// Forces along e, which turn nobody.
+template <int D, class Add>
+auto along_edges(const Add& add) {
+  return [&add](const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
+                std::span<const Vec<D>>, std::vector<Vec<D>>& force,
+                std::vector<Vec<D>>&) { add(network, velocity, force); };
 }
 
 // Solves that leave no trace in the solver.
@@ -84,6 +98,7 @@ Dynamics<D>::Dynamics(const Box<D>& box, Particles<D>& particles, const PairMode
       list_(box, model.cutoff(), settings.skin),
       resistance_(box, settings.hold_centre_of_mass) {
   if (has_mass()) particles_.carry_inertia();
+  if (!particles_.spin_of_species.empty()) particles_.carry_spins(has_mass());
 }
 
 template <int D>
@@ -108,6 +123,7 @@ void Dynamics<D>::evaluate(std::span<const Vec<D>> positions, double time, Stage
     model_.refuse_unknown(stage.network, particles_);
   });
   stage.network.owned = particles_.owned();
+  write_levers(particles_, stage.network);
   write_slips(stage);
   stage.potential_force.resize(positions.size());
   stage.driving_force.resize(positions.size());
@@ -132,11 +148,13 @@ auto Dynamics<D>::draw_noise(const Stage<D>& stage, std::int64_t step, double dt
                   edge_noise);
   std::vector<Vec<D>> force(stage.position.size());
   add_edge_forces<D>(stage.network, edge_noise, force);
+  std::vector<Vec<D>> torque(stage.spin.size());
+  add_edge_torques<D>(stage.network, edge_noise, torque);
   if (constants_.zeta_0 > 0.0)
     add_drag_noise(particles_, settings_.seed, static_cast<std::uint64_t>(step),
                    std::sqrt(2.0 * constants_.kT * constants_.zeta_0 / dt), force);
   Unknowns xi;
-  motion_.dofs().gather(stage.arms, force, xi);
+  motion_.dofs().gather(stage.arms, force, torque, xi);
   return xi;
 }
 
@@ -148,20 +166,23 @@ auto Dynamics<D>::force(const Stage<D>& stage) -> Unknowns {
     const auto i = index(particle);
     force[i] = stage.potential_force[i] + stage.driving_force[i];
   });
+  std::vector<Vec<D>> torque(stage.spin.size());
   if (motion_.dofs().mobile() < motion_.dofs().particles()) {
     std::vector<std::int32_t> known;
     for (std::size_t i = 0; i < force.size(); ++i)
       if (particles_.is_known(i)) known.push_back(static_cast<std::int32_t>(i));
-    add_known_friction<D>(stage.network, known, stage.velocity, force);
+    add_known_friction<D>(stage.network, known, stage.velocity, stage.spin, force, torque);
   }
   add_sliding_friction(stage.network, force);
+  add_sliding_torques(stage.network, torque);
   Unknowns f;
-  motion_.dofs().gather(stage.arms, force, f);
+  motion_.dofs().gather(stage.arms, force, torque, f);
+  const std::span<double> of_nodes = motion_.dofs().velocities(std::span(f));
   for (std::size_t b = 0; b < index(motion_.dofs().bodies()); ++b) {
     const RigidLoad<D> load = surroundings_.body_load(b, stage.time);
     for (std::size_t c = 0; c < D; ++c) {
-      f[b * D + c] += load.torque.x[c];
-      f[motion_.dofs().body_node(b) * D + c] += load.force.x[c];
+      of_nodes[b * D + c] += load.torque.x[c];
+      of_nodes[motion_.dofs().body_node(b) * D + c] += load.force.x[c];
     }
   }
   return f;
@@ -170,26 +191,33 @@ auto Dynamics<D>::force(const Stage<D>& stage) -> Unknowns {
 template <int D>
 auto Dynamics<D>::friction(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
   const PhaseTimer timer(phases_, Phase::assembly);
-  return resisted(stage, motion_.dofs(), q, add_friction_forces<D>);
+  return resisted(
+      stage, motion_.dofs(), q,
+      [](const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
+         std::span<const Vec<D>> spin, std::vector<Vec<D>>& force, std::vector<Vec<D>>& torque) {
+        add_friction_forces<D>(network, velocity, force, spin);
+        add_friction_torques<D>(network, velocity, spin, torque);
+      });
 }
 
 template <int D>
 auto Dynamics<D>::spring(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
   const PhaseTimer timer(phases_, Phase::assembly);
-  return resisted(stage, motion_.dofs(), q, add_spring_forces<D>);
+  return resisted(stage, motion_.dofs(), q, along_edges<D>(add_spring_forces<D>));
 }
 
 template <int D>
 auto Dynamics<D>::bond_spring(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
   const PhaseTimer timer(phases_, Phase::assembly);
-  return resisted(stage, motion_.dofs(), q, add_bond_springs<D>);
+  return resisted(stage, motion_.dofs(), q, along_edges<D>(add_bond_springs<D>));
 }
 
 template <int D>
 auto Dynamics<D>::total_force(const Stage<D>& stage, const Unknowns& q) -> Unknowns {
   Unknowns f = force(stage);
   const Unknowns drag = friction(stage, q);
-  const Unknowns background = motion_.times_inertia(stage, q, constants_.zeta_0);
+  Unknowns background = motion_.times_inertia(stage, q, constants_.zeta_0);
+  std::fill_n(background.begin(), motion_.dofs().spins() * D, 0.0);  // the drag knows no spins
   for (std::size_t k = 0; k < f.size(); ++k) f[k] -= drag[k] + background[k];
   return f;
 }
@@ -199,7 +227,7 @@ const System& Dynamics<D>::assemble(const Stage<D>& stage, const StepWeights& we
   const PhaseTimer timer(phases_, Phase::assembly);
   resistance_.slide(stage.box);
   resistance_.rebuild(stage.network, motion_.dofs(), particles_, stage.position, stage.arms,
-                      weights.inertia + constants_.zeta_0, weights.stiffness_time,
+                      {weights.inertia, constants_.zeta_0}, weights.stiffness_time,
                       weights.bond_time);
   if (weights.stiffness_time > 0.0) {
     std::int64_t clamped = 0;
@@ -244,7 +272,7 @@ void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights
   Unknowns changed;  // the load, where it is not to be taken as it is
   if (box_.shear) {
     changed = without_sliding_springs(stage, weights, load);
-  } else if (motion_.dofs().bodies() > 0) {
+  } else if (motion_.dofs().bodies() > 0 || motion_.dofs().spins() > 0) {
     changed = load;
   }
   {
@@ -262,10 +290,11 @@ void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights
     balance_momentum(load, shift, guess);
   if (box_.shear && system.translations_are_null()) add_mean_flow(stage, guess);
   stage.velocity = motion_.velocities(stage, guess);
+  stage.spin = motion_.spins(stage, guess);
   const Share own = particles_.owned();
   own.ranks->together([&] {
     for (auto i = index(own.first); i < index(own.last); ++i)
-      if (!finite(stage.velocity[i]))
+      if (!finite(stage.velocity[i]) || !(stage.spin.empty() || finite(stage.spin[i])))
         throw BlowUpError(
             fmt::format("the velocity of particle {} is not finite", particles_.id[i]),
             particles_.id[i]);
@@ -273,13 +302,13 @@ void Dynamics<D>::solve(Stage<D>& stage, const Unknowns& load, const StepWeights
 }
 
 template <int D>
-std::vector<Vec<D>> Dynamics<D>::respond(const Stage<D>& stage, const std::vector<Vec<D>>& force,
-                                         double tolerance, bool again) {
+ParticleMotions<D> Dynamics<D>::respond(const Stage<D>& stage, const ParticleLoads<D>& loads,
+                                        double tolerance, bool again) {
   const Stopwatch watch;
   const Unremembered aside(*solver_);
   const System& system = again ? resistance_.system() : assemble(stage, {});
   Unknowns load;
-  motion_.dofs().gather(stage.arms, force, load);
+  motion_.dofs().gather(stage.arms, loads.force, loads.torque, load);
   Unknowns q(load.size(), 0.0);
   SolveReport report;
   {
@@ -291,11 +320,12 @@ std::vector<Vec<D>> Dynamics<D>::respond(const Stage<D>& stage, const std::vecto
   }
   note(report);
   const std::vector<Vec<D>> still(stage.position.size());
-  std::vector<Vec<D>> velocity;
-  motion_.dofs().scatter(stage.arms, q, still, velocity);
+  ParticleMotions<D> motions;
+  motion_.dofs().scatter(stage.arms, q, still, motions.velocity);
+  motion_.dofs().scatter_spins(q, still, motions.spin);
   // Observers ask for this while their own time is taken.
   phases_[Phase::measure] -= watch.seconds();
-  return velocity;
+  return motions;
 }
 
 template class Dynamics<2>;

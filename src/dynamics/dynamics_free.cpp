@@ -35,7 +35,7 @@ double norm_of_forces(std::span<const double> load, const Share& share,
 /// Says once what the null motions are. Throws SolverError where R v = f has no answer, or none that is told from others.
 template <int D>
 void Dynamics<D>::judge_null_motions(const Stage<D>& stage) {
-  const Resistance<D>& mobile = resistance_.mobile();
+  const Resistance<D>& mobile = resistance_.velocities().mobile();
   if (mobile.null_motions().empty()) return;
   const auto told = [&](const FreeGroup& group) {
     return fmt::format("{} particles, among them particle {}, can {} ({} null motion(s) of R)",

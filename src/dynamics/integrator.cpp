@@ -17,14 +17,14 @@ void Integrator<D>::begin(Dynamics<D>& dynamics, const Clock& clock) {
   dynamics.reorder_if_due(clock.step);
   dynamics.evaluate(dynamics.particles().position, clock.time(), record_.start);
   record_.v_start = dynamics.particles().end_velocity;
+  record_.w_start = dynamics.particles().end_spin;
 }
 
 template <int D>
 void Integrator<D>::finish(Dynamics<D>& dynamics, const Clock& clock, const Unknowns& q_mid,
                            const Unknowns& p_mid) {
   Motion<D>& motion = dynamics.motion();
-  record_.v_mid = motion.velocities(record_.start, q_mid);
-  record_.alarm_crossings += motion.move(record_.v_mid, clock.dt, clock.time());
+  move(dynamics, clock, q_mid);
   if (!dynamics.has_mass()) return;
   // What goes on is momentum, linear and angular: in 3D moments of inertia turn with the body.
   Unknowns p = motion.times_inertia(record_.start, motion.end_velocity(record_.start), 1.0);
@@ -33,8 +33,36 @@ void Integrator<D>::finish(Dynamics<D>& dynamics, const Clock& clock, const Unkn
 }
 
 template <int D>
-void CarriedUnknowns<D>::keep(Dynamics<D>& dynamics, const std::vector<double>& q) {
+void Integrator<D>::move(Dynamics<D>& dynamics, const Clock& clock, const Unknowns& q_mid) {
+  Motion<D>& motion = dynamics.motion();
+  record_.v_mid = motion.velocities(record_.start, q_mid);
+  record_.w_mid = motion.spins(record_.start, q_mid);
+  record_.alarm_crossings += motion.move(record_.v_mid, clock.dt, clock.time());
+  dynamics.particles().spin = record_.w_mid;
+}
+
+template <int D>
+std::string CarriedUnknowns<D>::spin_name() const {
+  return name_ + "_spin";
+}
+
+template <int D>
+void CarriedUnknowns<D>::prepare(Dynamics<D>& dynamics) {
+  dynamics.particles().carry(name_);
+  if (dynamics.dofs().any_spin()) dynamics.particles().carry(spin_name());
+  prepared_ = true;
+}
+
+template <int D>
+void CarriedUnknowns<D>::keep(Dynamics<D>& dynamics, const std::vector<double>& all) {
   const DofMap<D>& dofs = dynamics.dofs();
+  const std::span<const double> q = dofs.velocities(std::span(all));
+  const auto spinning = dofs.spin_particles();
+  if (!spinning.empty()) {
+    std::vector<Vec<D>>& spins = dynamics.particles().carry(spin_name());
+    for (std::size_t s = 0; s < spinning.size(); ++s)
+      for (std::size_t c = 0; c < D; ++c) spins[index(spinning[s])].x[c] = all[s * D + c];
+  }
   std::vector<Vec<D>>& column = dynamics.particles().carry(name_);
   const auto free = dofs.free_particles();
   for (std::size_t k = 0; k < free.size(); ++k)
@@ -53,14 +81,21 @@ std::vector<double> CarriedUnknowns<D>::unknowns(Dynamics<D>& dynamics) const {
         "the checkpoint's integrator arrays do not fit the bodies: it is damaged or of another "
         "case");
   const std::vector<Vec<D>>& column = dynamics.particles().carry(name_);
-  std::vector<double> q(index(dofs.unknowns()));
+  std::vector<double> all(index(dofs.unknowns()));
+  const auto spinning = dofs.spin_particles();
+  if (!spinning.empty()) {
+    const std::vector<Vec<D>>& spins = dynamics.particles().carry(spin_name());
+    for (std::size_t s = 0; s < spinning.size(); ++s)
+      for (std::size_t c = 0; c < D; ++c) all[s * D + c] = spins[index(spinning[s])].x[c];
+  }
+  const std::span<double> q = dofs.velocities(std::span(all));
   const auto free = dofs.free_particles();
   for (std::size_t k = 0; k < free.size(); ++k)
     for (std::size_t c = 0; c < D; ++c) q[dofs.free_node(k) * D + c] = column[index(free[k])].x[c];
   const auto middle = bodies_.begin() + dofs.bodies() * D;
   std::copy(bodies_.begin(), middle, q.begin());
   std::copy(middle, bodies_.end(), q.end() - dofs.bodies() * D);
-  return q;
+  return all;
 }
 
 template <int D>

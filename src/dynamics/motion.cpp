@@ -22,7 +22,7 @@ std::size_t ranges(std::int64_t n) { return index((n + range - 1) / range); }
 
 template <int D>
 const DofMap<D>& Motion<D>::dofs() {
-  if (!dofs_) dofs_ = std::make_unique<DofMap<D>>(particles_);
+  if (!dofs_) dofs_ = std::make_unique<DofMap<D>>(particles_, mass_);
   return *dofs_;
 }
 
@@ -33,6 +33,7 @@ void Motion<D>::locate(std::span<const Vec<D>> positions, double time, Stage<D>&
   stage.box = box_.at(time);
   stage.position.resize(positions.size());
   stage.velocity.resize(positions.size());
+  stage.spin.assign(dofs().any_spin() ? positions.size() : 0, Vec<D>{});
   const Share own = particles_.owned();
   std::vector<char> lost(ranges(n), 0);
   parallel_ranges(n, range, [&](std::int64_t begin, std::int64_t end) {
@@ -61,6 +62,13 @@ std::vector<Vec<D>> Motion<D>::velocities(const Stage<D>& stage, const Unknowns&
   std::vector<Vec<D>> velocity;
   dofs().scatter(stage.arms, q, stage.velocity, velocity);
   return velocity;
+}
+
+template <int D>
+std::vector<Vec<D>> Motion<D>::spins(const Stage<D>& stage, const Unknowns& q) {
+  std::vector<Vec<D>> spin;
+  dofs().scatter_spins(q, stage.spin, spin);
+  return spin;
 }
 
 template <int D>
@@ -149,6 +157,9 @@ auto Motion<D>::end_velocity(const Stage<D>& stage) -> Unknowns {
   Unknowns q;
   dofs().gather(stage.arms, particles_.end_velocity, q);
   dofs().divide_by_inertia(stage.arms, q);
+  const auto spinning = dofs().spin_particles();
+  for (std::size_t s = 0; s < spinning.size(); ++s)
+    for (std::size_t c = 0; c < D; ++c) q[s * D + c] = particles_.end_spin[index(spinning[s])].x[c];
   return q;
 }
 
@@ -161,6 +172,8 @@ void Motion<D>::set_end_momentum(const Unknowns& p) {
   dofs().divide_by_inertia(arms, q);
   cross_faces(q);
   dofs().scatter(arms, q, known, particles_.end_velocity);
+  const std::vector<Vec<D>> known_spin = particles_.end_spin;
+  dofs().scatter_spins(q, known_spin, particles_.end_spin);
 }
 
 template class Motion<2>;

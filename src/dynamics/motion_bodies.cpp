@@ -37,6 +37,7 @@ void Motion<D>::place_arms(Stage<D>& stage) {
     for (const std::int32_t particle : dofs_->constituents(b)) {
       const auto p = index(particle);
       stage.velocity[p] = motion.velocity + swing(motion.angular, stage.arms[p]);
+      if (!stage.spin.empty()) stage.spin[p] = motion.angular;
     }
   });
 }

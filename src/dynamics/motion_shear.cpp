@@ -46,8 +46,10 @@ void Motion<D>::leave_images(const std::vector<std::int32_t>& before) {
 template <int D>
 void Motion<D>::cross_faces(Unknowns& q) {
   if (faces_crossed_.empty()) return;
+  const std::span<double> velocity = dofs().velocities(std::span(q));
   const auto cross = [&](std::size_t node, std::int32_t particle) {
-    for (std::size_t c = 0; c < D; ++c) q[node * D + c] -= faces_crossed_[index(particle)].x[c];
+    for (std::size_t c = 0; c < D; ++c)
+      velocity[node * D + c] -= faces_crossed_[index(particle)].x[c];
   };
   const auto free = dofs().free_particles();
   for (std::size_t k = 0; k < free.size(); ++k) cross(dofs().free_node(k), free[k]);

@@ -23,7 +23,7 @@ double mean_diagonal(const Resistance<D>& matrix) {
 
 // g (M + R) g/g g in the unknowns of the solve: what a load meets along itself (1 for no load).
 template <int D>
-double resistance_to(const RigidResistance<D>& matrix, std::vector<double> g) {
+double resistance_to(const SpinResistance<D>& matrix, std::vector<double> g) {
   matrix.scale_load(g);
   std::vector<double> met(g.size());
   matrix.system().apply(g, met);
@@ -96,7 +96,7 @@ const StepRecord<D>& TwoStage<D>::step(Dynamics<D>& dynamics, const Clock& clock
     if (implicit_bonds) add_bond_terms(dynamics, clock.dt, q, g);
     // The matrix is still that of the first stage.
     const double weight = 1.0 - start_weight_ - end_weight;
-    const double a = weight / resistance_to(dynamics.rigid_resistance(), g);
+    const double a = weight / resistance_to(dynamics.spin_resistance(), g);
     for (std::size_t k = 0; k < g.size(); ++k) p_mid[k] += a * g[k];
   }
   // The first answer is the guess of the second solve.
@@ -109,11 +109,11 @@ const StepRecord<D>& TwoStage<D>::step(Dynamics<D>& dynamics, const Clock& clock
     for (std::size_t k = 0; k < q.size(); ++k) p_mid[k] += rest[k];
   }
   this->finish(dynamics, clock, q_mid, p_mid);
-  record.respond = [this, &dynamics, again = false](const std::vector<Vec<D>>& force,
+  record.respond = [this, &dynamics, again = false](const ParticleLoads<D>& loads,
                                                     double tolerance) mutable {
-    auto velocity = dynamics.respond(this->record_.start, force, tolerance, again);
+    auto motions = dynamics.respond(this->record_.start, loads, tolerance, again);
     again = true;
-    return velocity;
+    return motions;
   };
   return record;
 }

@@ -27,8 +27,7 @@ const StepRecord<D>& VelocityVerlet<D>::step(Dynamics<D>& dynamics, const Clock&
     half_way[k] += half_kick * force[k];
     predicted[k] = v[k] + 2.0 * lambda_ * half_kick * force[k];
   }
-  record.v_mid = motion.velocities(record.start, half_way);
-  record.alarm_crossings += motion.move(record.v_mid, clock.dt, clock.time());
+  this->move(dynamics, clock, half_way);
   motion.cross_faces(half_way);
   half_way_.keep(dynamics, half_way);
   motion.set_end_momentum(predicted);

@@ -61,9 +61,17 @@ void add_edges(const PairNetwork<D>& network, bool opposite, const Value& value,
   add_bonds(network, opposite, value, sum);
 }
 
-template <int D>
-Vec<D> slip_of(const PairNetwork<D>& network, std::size_t k, std::span<const Vec<D>> velocity) {
-  return velocity[index(network.i[k])] - velocity[index(network.j[k])];
+// torque[p] -= l_p e x value(k), value: force on i.
+template <int D, class Value>
+void add_torques(const PairNetwork<D>& network, const Value& value, std::vector<Vec<D>>& sum) {
+  if (network.lever_i.empty()) return;
+  parallel_for(network.particles, [&](std::int64_t particle) {
+    for (const std::int32_t edge : network.edges_of(particle)) {
+      const auto k = index(edge);
+      const double arm = network.i[k] == particle ? network.lever_i[k] : network.lever_j[k];
+      if (arm > 0.0) sum[index(particle)] -= arm * torque(network.e[k], value(k));
+    }
+  });
 }
 
 // Force on i of the stiffness of edge k.
@@ -94,10 +102,18 @@ void add_conservative_forces(const PairNetwork<D>& network, std::vector<Vec<D>>&
 
 template <int D>
 void add_friction_forces(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
-                         std::vector<Vec<D>>& force) {
+                         std::vector<Vec<D>>& force, std::span<const Vec<D>> spin) {
+  if (spin.empty()) {
+    add_edges(
+        network, true,
+        [&](std::size_t k) { return friction_of(network, k, network.inner_slip(k, velocity)); },
+        force);
+    return;
+  }
   add_edges(
       network, true,
-      [&](std::size_t k) { return friction_of(network, k, slip_of(network, k, velocity)); }, force);
+      [&](std::size_t k) { return friction_of(network, k, network.inner_slip(k, velocity, spin)); },
+      force);
 }
 
 template <int D>
@@ -109,6 +125,29 @@ void add_sliding_friction(const PairNetwork<D>& network, std::vector<Vec<D>>& fo
 }
 
 template <int D>
+void add_edge_torques(const PairNetwork<D>& network, std::span<const Vec<D>> edge_force,
+                      std::vector<Vec<D>>& torque) {
+  add_torques(
+      network, [&](std::size_t k) { return edge_force[k]; }, torque);
+}
+
+template <int D>
+void add_friction_torques(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
+                          std::span<const Vec<D>> spin, std::vector<Vec<D>>& torque) {
+  add_torques(
+      network,
+      [&](std::size_t k) { return friction_of(network, k, network.inner_slip(k, velocity, spin)); },
+      torque);
+}
+
+template <int D>
+void add_sliding_torques(const PairNetwork<D>& network, std::vector<Vec<D>>& torque) {
+  if (network.slip_0.empty()) return;
+  add_torques(
+      network, [&](std::size_t k) { return friction_of(network, k, network.slip_0[k]); }, torque);
+}
+
+template <int D>
 void add_known_friction(const PairNetwork<D>& network, std::span<const std::int32_t> known,
                         std::span<const Vec<D>> velocity, std::vector<Vec<D>>& force) {
   for (const std::int32_t p : known)
@@ -116,6 +155,27 @@ void add_known_friction(const PairNetwork<D>& network, std::span<const std::int3
       const auto k = index(edge);
       const std::int32_t other = network.i[k] == p ? network.j[k] : network.i[k];
       force[index(other)] -= friction_of(network, k, velocity[index(p)]);
+    }
+}
+
+template <int D>
+void add_known_friction(const PairNetwork<D>& network, std::span<const std::int32_t> known,
+                        std::span<const Vec<D>> velocity, std::span<const Vec<D>> spin,
+                        std::vector<Vec<D>>& force, std::vector<Vec<D>>& moment) {
+  if (network.lever_i.empty()) return add_known_friction(network, known, velocity, force);
+  for (const std::int32_t p : known)
+    for (const std::int32_t edge : network.edges_of(p)) {
+      const auto k = index(edge);
+      const bool first = network.i[k] == p;
+      const auto other = index(first ? network.j[k] : network.i[k]);
+      const double own = first ? network.lever_i[k] : network.lever_j[k];
+      const double theirs = first ? network.lever_j[k] : network.lever_i[k];
+      // As the other one sees it: e towards it.
+      const Vec<D> e = first ? -1.0 * network.e[k] : network.e[k];
+      const Vec<D> slip = -1.0 * velocity[index(p)] - swing(own * spin[index(p)], e);
+      const Vec<D> f = friction_of(network, k, slip);
+      force[other] += f;
+      moment[other] -= theirs * torque(e, f);
     }
 }
 
@@ -192,7 +252,15 @@ void add_density_curvature(const PairNetwork<D>& network, std::vector<double>& l
                                    std::vector<Vec<D>>&);                                   \
   template void add_conservative_forces<D>(const PairNetwork<D>&, std::vector<Vec<D>>&);    \
   template void add_friction_forces<D>(const PairNetwork<D>&, std::span<const Vec<D>>,      \
-                                       std::vector<Vec<D>>&);                               \
+                                       std::vector<Vec<D>>&, std::span<const Vec<D>>);      \
+  template void add_edge_torques<D>(const PairNetwork<D>&, std::span<const Vec<D>>,         \
+                                    std::vector<Vec<D>>&);                                  \
+  template void add_friction_torques<D>(const PairNetwork<D>&, std::span<const Vec<D>>,     \
+                                        std::span<const Vec<D>>, std::vector<Vec<D>>&);     \
+  template void add_sliding_torques<D>(const PairNetwork<D>&, std::vector<Vec<D>>&);        \
+  template void add_known_friction<D>(const PairNetwork<D>&, std::span<const std::int32_t>, \
+                                      std::span<const Vec<D>>, std::span<const Vec<D>>,     \
+                                      std::vector<Vec<D>>&, std::vector<Vec<D>>&);          \
   template void add_sliding_friction<D>(const PairNetwork<D>&, std::vector<Vec<D>>&);       \
   template void add_known_friction<D>(const PairNetwork<D>&, std::span<const std::int32_t>, \
                                       std::span<const Vec<D>>, std::vector<Vec<D>>&);       \

@@ -144,6 +144,7 @@ bool resists_all_slip(const Resistance<D>& resistance, std::size_t row,
   if (!resistance.transverse()) return false;
   double of_particle = 0.0;
   for (std::size_t c = 0; c < D; ++c) of_particle += resistance.diagonal()[row][c * D + c];
+  if (resistance.sees_spins(link)) return false;
   const auto& across = resistance.across(link);
   const Vec<D>& g = resistance.g(link);
   const double along = across.sign * dot(g, g) + across.zeta_perp;
@@ -295,6 +296,11 @@ class GroupMotions {
       }
       typename Resistance<D>::Block friction{};
       const auto& across = resistance_.across(link);
+      if (resistance_.sees_spins(link)) {
+        const double along = across.sign * dot(g, g) + across.zeta_perp;
+        slips.add(power(std::sqrt(along) / norm(apart) * apart, apart, false));
+        continue;
+      }
       for (std::size_t a = 0; a < D; ++a)
         for (std::size_t b = 0; b < D; ++b)
           friction[a * D + b] = across.sign * g.x[a] * g.x[b] + (a == b ? across.zeta_perp : 0.0);

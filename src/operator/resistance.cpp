@@ -113,6 +113,11 @@ void Resistance<D>::weigh_edges(const PairNetwork<D>& network) {
   const auto edges = index(network.size());
   resize_afresh(g_, edges);
   resize_afresh(across_, transverse ? edges : 0);
+  sees_spins_.resize(network.lever_i.size());
+  parallel_for(std::ssize(sees_spins_), [&](std::int64_t edge) {
+    const auto k = index(edge);
+    sees_spins_[k] = network.lever_i[k] + network.lever_j[k] > 0.0 ? 1 : 0;
+  });
   parallel_for(network.size(), [&](std::int64_t edge) {
     const auto k = index(edge);
     double along = network.zeta_par[k];

@@ -121,11 +121,11 @@ std::int64_t PairNetwork<D>::bytes() const {
   constexpr std::size_t per_edge = 2 * sizeof(std::int32_t) + sizeof(Vec<D>) + 3 * sizeof(double);
   std::int64_t columns = densities.bytes();
   for (const Column* column : {&u, &k_c, &zeta_perp, &kT}) columns += column->bytes();
-  return columns + static_cast<std::int64_t>(i.size() * per_edge + slip_0.size() * sizeof(Vec<D>) +
-                                             beyond.size() * sizeof(Beyond) +
-                                             (edge.size() + scratch.size() + next.size()) *
-                                                 sizeof(std::int32_t) +
-                                             (start.size() + first.size()) * sizeof(std::int64_t));
+  return columns + static_cast<std::int64_t>(
+                       i.size() * per_edge + slip_0.size() * sizeof(Vec<D>) +
+                       2 * lever_i.size() * sizeof(double) + beyond.size() * sizeof(Beyond) +
+                       (edge.size() + scratch.size() + next.size()) * sizeof(std::int32_t) +
+                       (start.size() + first.size()) * sizeof(std::int64_t));
 }
 
 template struct PairNetwork<2>;

@@ -26,6 +26,17 @@ void Particles<D>::carry_inertia() {
 }
 
 template <int D>
+void Particles<D>::carry_spins(bool inertia) {
+  if (spinning_) return;
+  spinning_ = true;
+  spin.assign(position.size(), Vec<D>{});
+  fields_.add("spin", &spin);
+  if (!inertia) return;
+  end_spin.assign(position.size(), Vec<D>{});
+  fields_.add("end_spin", &end_spin);
+}
+
+template <int D>
 std::vector<Vec<D>>& Particles<D>::carry(const std::string& name) const {
   const auto [place, added] = carried_.try_emplace(name, position.size());
   if (added) fields_.add(name, &place->second);

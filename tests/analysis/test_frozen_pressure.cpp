@@ -266,7 +266,7 @@ TYPED_TEST(FrozenPressureTest, MobilityIsThatOfTheSaddlePoint) {
     const auto held = answer(tolerance, &pressure);
     EXPECT_NEAR(held.mobility, exact, (tolerance < 1e-3 ? 1e-7 : 5e-4) * exact);
     if (tolerance > 1e-3) continue;
-    std::vector<Vec<D>> velocity = step.record.respond(force, tolerance);
+    std::vector<Vec<D>> velocity = step.record.respond({force}, tolerance).velocity;
     std::vector<double> rates = pressure.rates_of(velocity);
     const auto found = pressure.hold(rates, velocity, exact, tolerance).pressure;
     for (std::size_t g = 1; g < p.size(); ++g)

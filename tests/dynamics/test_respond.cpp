@@ -26,7 +26,7 @@ TYPED_TEST(Respond, BalancesTheForces) {
   std::vector<std::vector<Vec<D>>> f, v;
   for (const std::uint64_t seed : {1u, 2u}) {
     f.push_back(support::random_vectors<D>(record.v_mid.size(), seed));
-    v.push_back(record.respond(f.back(), 0.0));
+    v.push_back(record.respond({f.back()}, 0.0).velocity);
     std::vector<Vec<D>> left = f.back();
     Vec<D> mean{};
     for (const auto& x : left) mean += (1.0 / static_cast<double>(left.size())) * x;
@@ -63,7 +63,7 @@ TYPED_TEST(Respond, LeavesTheRunAsItIs) {
       for (std::size_t i = 0; i < force.size(); ++i)
         force[i][1] =
             std::cos(2.0 * std::acos(-1.0) * record.start.position[i][0] / swarm.box.size[0]);
-      record.respond(force, 1e-3);
+      record.respond({force}, 1e-3);
     }
     ends.push_back(swarm.positions());
   }

@@ -14,7 +14,7 @@
 #include "odpd/core/timer.h"
 #include "odpd/dynamics/motion.h"
 #include "odpd/geometry/pair_list.h"
-#include "odpd/operator/rigid_resistance.h"
+#include "odpd/operator/spin_resistance.h"
 #include "odpd/pairs/pair_model.h"
 #include "odpd/solvers/solver.h"
 
@@ -105,19 +105,21 @@ class Dynamics {
   /// says; with neither it is 0, or under shear that of the sheared flow.
   void solve(Stage<D>& stage, const Unknowns& load, const StepWeights& weights, Unknowns& guess);
 
-  /// P (P^T R P)^+ P^T f at a stage that was evaluated: velocities from one force per particle, with the drag in R but no
+  /// P (P^T R P)^+ P^T f at a stage that was evaluated: velocities from loads on particles, with the drag in R but no
   /// mass and no stiffness. Sets the solver up first unless the last solve was one of these for the same stage (`again`).
   /// Throws SolverError when the solver did not converge.
-  std::vector<Vec<D>> respond(const Stage<D>& stage, const std::vector<Vec<D>>& force,
-                              double tolerance, bool again);
+  ParticleMotions<D> respond(const Stage<D>& stage, const ParticleLoads<D>& loads, double tolerance,
+                             bool again);
 
   /// M = 2 m/dt.
   double inertia(double dt) const { return 2.0 * constants_.mass / dt; }
   bool has_mass() const { return constants_.mass > 0.0; }
 
   /// R on the mobile particles: free particles and constituents.
-  const Resistance<D>& resistance() const { return resistance_.mobile(); }
-  const RigidResistance<D>& rigid_resistance() const { return resistance_; }
+  const Resistance<D>& resistance() const { return resistance_.velocities().mobile(); }
+  const RigidResistance<D>& rigid_resistance() const { return resistance_.velocities(); }
+  /// Of all unknowns.
+  const SpinResistance<D>& spin_resistance() const { return resistance_; }
   const PairList<D>& pair_list() const { return list_; }
   const DofMap<D>& dofs() { return motion_.dofs(); }
   Solver& solver() { return *solver_; }
@@ -145,7 +147,7 @@ class Dynamics {
   std::unique_ptr<Solver> solver_;
   DynamicsSettings settings_;
   PairList<D> list_;
-  RigidResistance<D> resistance_;
+  SpinResistance<D> resistance_;
   PhaseSeconds phases_;
   SolverStatistics statistics_;
   bool told_null_motions_ = false;

@@ -59,11 +59,14 @@ class Integrator {
   void finish(Dynamics<D>& dynamics, const Clock& clock, const Unknowns& q_mid,
               const Unknowns& p_mid);
 
+  /// r' = r + dt P q_mid, and the record's v_mid and w_mid.
+  void move(Dynamics<D>& dynamics, const Clock& clock, const Unknowns& q_mid);
+
   StepRecord<D> record_;
 };
 
 /// A vector of unknowns that a scheme keeps from step to step: what belongs to free particles in a column that they carry
-/// (Particles::carry), so that it follows them in memory and into checkpoints; w and V of bodies here.
+/// (Particles::carry), so that it follows them in memory and into checkpoints, and their spins in another; w and V of bodies here.
 template <int D>
 class CarriedUnknowns {
  public:
@@ -72,10 +75,7 @@ class CarriedUnknowns {
   /// Nothing was kept yet.
   bool empty() const { return empty_; }
   /// The particles carry the column from now on. Before anything is kept or loaded.
-  void prepare(Dynamics<D>& dynamics) {
-    dynamics.particles().carry(name_);
-    prepared_ = true;
-  }
+  void prepare(Dynamics<D>& dynamics);
   void keep(Dynamics<D>& dynamics, const std::vector<double>& q);
   /// In the present order of the unknowns. Throws IoError where a checkpoint held those of other bodies.
   std::vector<double> unknowns(Dynamics<D>& dynamics) const;
@@ -84,6 +84,8 @@ class CarriedUnknowns {
   void load(const StateReader& in);
 
  private:
+  std::string spin_name() const;
+
   std::string name_;
   bool empty_ = true, prepared_ = false;
   std::vector<double> bodies_;  // w of each, then V of each, D numbers

@@ -24,7 +24,10 @@ class Motion {
 
   /// References must outlive this object.
   Motion(const Box<D>& box, Particles<D>& particles, const Surroundings<D>& surroundings)
-      : box_(box), particles_(particles), surroundings_(surroundings) {}
+      : box_(box),
+        particles_(particles),
+        surroundings_(surroundings),
+        mass_(surroundings.constants().mass) {}
 
   Particles<D>& particles() { return particles_; }
   /// P of these particles.
@@ -38,6 +41,8 @@ class Motion {
   void locate(std::span<const Vec<D>> positions, double time, Stage<D>& stage);
   /// P q + the stage's known velocities.
   std::vector<Vec<D>> velocities(const Stage<D>& stage, const Unknowns& q);
+  /// Likewise angular velocities; empty where nobody spins.
+  std::vector<Vec<D>> spins(const Stage<D>& stage, const Unknowns& q);
 
   /// position + dt velocity from time t on, wrapped (with shear single particles by `locate` only). Adds the mirror's
   /// catches to `crossings`. Throws BlowUpError as `move`.
@@ -49,7 +54,7 @@ class Motion {
   /// After `move`: velocities q of the step become those of the images that are now in the box.
   void cross_faces(Unknowns& q);
 
-  /// inertia P^T P q: momenta, with a mass, or a drag, of `inertia` on every particle that moves.
+  /// inertia P^T P q: momenta, with a mass of `inertia` on every particle that moves, and moments of inertia in proportion.
   Unknowns times_inertia(const Stage<D>& stage, const Unknowns& q, double inertia);
   /// The unknowns of the particles' end velocities (zeros where they carry none), at the stage of a step's start.
   Unknowns end_velocity(const Stage<D>& stage);
@@ -83,6 +88,7 @@ class Motion {
   const Box<D> box_;
   Particles<D>& particles_;
   const Surroundings<D>& surroundings_;
+  const double mass_;
   std::unique_ptr<DofMap<D>> dofs_;
   std::vector<Vec<D>> faces_crossed_;  // with shear: velocity that each particle lost in `move`
   Box<D> moved_in_;                    // the box at the end of `move`

@@ -29,20 +29,43 @@ void add_edge_forces(const PairNetwork<D>& network, std::span<const Vec<D>> edge
 template <int D>
 void add_conservative_forces(const PairNetwork<D>& network, std::vector<Vec<D>>& force);
 
-/// force[p] -= (R v)_p, friction with the physical zeta for the velocities of all particles, without that of slip_0.
+/// force[p] -= (R v)_p, friction with the physical zeta for the velocities and spins (empty: none) of all particles, without that of
+/// slip_0.
 template <int D>
 void add_friction_forces(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
-                         std::vector<Vec<D>>& force);
+                         std::vector<Vec<D>>& force, std::span<const Vec<D>> spin = {});
 
 /// force[p] -= friction by the network's slip_0 alone (nothing where there is none).
 template <int D>
 void add_sliding_friction(const PairNetwork<D>& network, std::vector<Vec<D>>& force);
+
+// Torques about the particles' centres, where the network has lever arms; nothing where it has none.
+
+/// torque[p] -= sum over edges of p of l_p e x edge_force; edge_force: on i, one per edge.
+template <int D>
+void add_edge_torques(const PairNetwork<D>& network, std::span<const Vec<D>> edge_force,
+                      std::vector<Vec<D>>& torque);
+
+/// Those of add_friction_forces.
+template <int D>
+void add_friction_torques(const PairNetwork<D>& network, std::span<const Vec<D>> velocity,
+                          std::span<const Vec<D>> spin, std::vector<Vec<D>>& torque);
+
+/// Those of add_sliding_friction.
+template <int D>
+void add_sliding_torques(const PairNetwork<D>& network, std::vector<Vec<D>>& torque);
 
 /// The same on the partners of the particles `known` (indices in memory, ascending), by the motion of those alone: all others are
 /// at rest, whatever `velocity` says of them. Costs as much as they have edges.
 template <int D>
 void add_known_friction(const PairNetwork<D>& network, std::span<const std::int32_t> known,
                         std::span<const Vec<D>> velocity, std::vector<Vec<D>>& force);
+
+/// The same where particles spin, with the torques.
+template <int D>
+void add_known_friction(const PairNetwork<D>& network, std::span<const std::int32_t> known,
+                        std::span<const Vec<D>> velocity, std::span<const Vec<D>> spin,
+                        std::vector<Vec<D>>& force, std::vector<Vec<D>>& torque);
 
 /// force[p] -= (K v)_p with K = sum over edges of max(k_c, 0) e e^T, the linearised conservative force along the line of
 /// centres. With that of slip_0.

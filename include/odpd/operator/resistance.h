@@ -86,6 +86,10 @@ class Resistance : public System {
   /// g = sqrt(|zeta_par - zeta_perp|) e of an edge.
   const Vec<D>& g(const Link& link) const { return g_[index(link.edge)]; }
   const Across& across(const Link& link) const { return across_[index(link.edge)]; }
+  /// Friction across e sees spins, and does not resist where both ends turn as one (operator/spin_resistance.h).
+  bool sees_spins(const Link& link) const {
+    return !sees_spins_.empty() && sees_spins_[index(link.edge)] != 0;
+  }
   /// The link carries friction.
   bool ties(const Link& link) const {
     return dot(g(link), g(link)) > 0.0 || (!across_.empty() && across(link).zeta_perp > 0.0);
@@ -119,6 +123,7 @@ class Resistance : public System {
   Share share_;
   std::vector<Vec<D>> g_;            // per edge of the network
   std::vector<Across> across_;       // per edge, or empty
+  std::vector<char> sees_spins_;     // per edge; empty where nobody spins
   std::vector<std::int64_t> start_;  // rows of links_
   std::vector<Link> links_;
   std::vector<std::int32_t> parent_;  // per node its lowest neighbour; then of check_clusters

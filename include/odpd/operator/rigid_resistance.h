@@ -43,6 +43,15 @@ class RigidResistance : public System {
   /// Diagonal block of A of all unknowns of each body, w before V: 2D x 2D, row-major.
   void body_blocks(std::vector<double>& blocks) const;
 
+  // With bodies: between unknowns and the mobile particles, of the constituents of all ranks.
+
+  /// v = P y.
+  void to_particles(std::span<const double> y, std::span<double> v) const;
+  /// y = P^T f.
+  void from_particles(std::span<const double> f, std::span<double> y) const;
+  /// X(a) S of a constituent, the member-th of all: what y_w adds to its velocity.
+  typename Resistance<D>::Block lever(std::size_t b, std::size_t member) const;
+
   // In place, size() numbers; nothing without bodies.
 
   /// Unknowns' loads from forces and torques.
@@ -66,16 +75,11 @@ class RigidResistance : public System {
   bool holds_centre_of_mass() const override { return mobile_.holds_centre_of_mass(); }
   std::span<const std::vector<double>> null_motions() const override { return null_motions_; }
   std::uint64_t generation() const override { return mobile_.generation(); }
-  Share share() const override { return dofs_->share(); }
+  Share share() const override { return dofs_->node_share(); }
 
  private:
-  void to_particles(std::span<const double> y, std::span<double> v) const;
-  void from_particles(std::span<const double> f, std::span<double> y) const;
   template <class Change>
   void for_each_body(std::span<double> x, const Change& change) const;
-  /// X(a) S of a constituent: what y_w adds to its velocity.
-  typename Resistance<D>::Block lever(std::size_t b, std::size_t member) const;
-
   Resistance<D> mobile_;
   const DofMap<D>* dofs_ = nullptr;
   RigidMap<D> map_;

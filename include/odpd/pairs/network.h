@@ -3,13 +3,17 @@
 //
 //   R = sum_edges J^T Z J,  Z = zeta_par e e^T + zeta_perp (I - e e^T),  F_B = sum_edges J^T sqrt(2 kT Z/dt) w,
 //
-// with J the map from the two velocities to the slip v_i - v_j. The whole slip of an edge is v_i - v_j + slip_0.
+// with J the map from the two velocities to the slip v_i - v_j. The whole slip of an edge is v_i - v_j + slip_0, and where particles
+// spin (particles/spin.h)
+//
+//   v_i - v_j + e x (l_i w_i + l_j w_j) + slip_0
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "odpd/core/communicator.h"
+#include "odpd/core/rotation.h"
 #include "odpd/core/vec.h"
 #include "odpd/pairs/column.h"
 
@@ -57,6 +61,8 @@ struct PairNetwork {
   /// Relative velocity of the images that interact: the sliding ones of Lees-Edwards (length/time). Empty without shear;
   /// written by Dynamics::evaluate for all edges, bonds too.
   std::vector<Vec<D>> slip_0;
+  /// l_i and l_j of each edge (length). Empty where nobody spins; written by Dynamics::evaluate for all edges (pairs/levers.h).
+  std::vector<double> lever_i, lever_j;
 
   // The edges of each particle, in fixed order: edge[start[p]] .. edge[start[p+1]-1].
   std::vector<std::int64_t> start;
@@ -83,10 +89,18 @@ struct PairNetwork {
     const Vec<D> along = f_c[k] * e[k];
     return beyond.empty() || k < first_bond ? along : along + beyond[k - first_bond].force;
   }
-  /// What friction sees on edge k where the particles have these velocities.
-  Vec<D> slip(std::size_t k, std::span<const Vec<D>> velocity) const {
-    const Vec<D> v = velocity[index(i[k])] - velocity[index(j[k])];
+  /// What friction sees on edge k where the particles have these velocities and spins (empty: none).
+  Vec<D> slip(std::size_t k, std::span<const Vec<D>> velocity,
+              std::span<const Vec<D>> spin = {}) const {
+    const Vec<D> v = inner_slip(k, velocity, spin);
     return slip_0.empty() ? v : v + slip_0[k];
+  }
+  /// The same without slip_0.
+  Vec<D> inner_slip(std::size_t k, std::span<const Vec<D>> velocity,
+                    std::span<const Vec<D>> spin = {}) const {
+    const Vec<D> v = velocity[index(i[k])] - velocity[index(j[k])];
+    if (spin.empty() || lever_i.empty()) return v;
+    return v - swing(lever_i[k] * spin[index(i[k])] + lever_j[k] * spin[index(j[k])], e[k]);
   }
   /// None of them is a bond at first.
   void resize(std::int64_t edges);

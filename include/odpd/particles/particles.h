@@ -31,6 +31,10 @@ class Particles {
   /// v' at the end of the last step, whose variance is kT/m; empty unless carry_inertia was called; length/time. Of
   /// constituents that of `moving_image`.
   std::vector<Vec<D>> end_velocity;
+  // Angular velocities, in 2D (w, 0); empty unless carry_spins was called; 1/time.
+  std::vector<Vec<D>> spin;  ///< as `velocity`; of constituents that of their body
+  std::vector<Vec<D>>
+      end_spin;  ///< as `end_velocity`, of variance kT/I; 0 where the moment of inertia is
   /// Persistent identity, 0, 1, ...; survives reordering and restart.
   std::vector<std::int64_t> id;
   std::vector<std::int32_t> species;  ///< index into the scene's species
@@ -69,6 +73,8 @@ class Particles {
 
   /// From now on `end_velocity` has an entry per particle, at first zero, and is state like the other fields.
   void carry_inertia();
+  /// Likewise `spin`, and with `inertia` `end_spin`.
+  void carry_spins(bool inertia);
   /// A vector per particle that an integrator or an observer keeps from step to step under this name, zero at first, the
   /// same whenever the name comes again: it is reordered, saved and loaded with the particles. It belongs to whoever asks,
   /// so it is none of their own state and may be had from const particles. A restart finds the names given before `load`.
@@ -91,7 +97,7 @@ class Particles {
  private:
   mutable FieldTable<D> fields_;                                // `carry` adds to it
   mutable std::map<std::string, std::vector<Vec<D>>> carried_;  // by name
-  bool inertial_ = false;
+  bool inertial_ = false, spinning_ = false;
   const Communicator* ranks_ = &Communicator::alone();
 };
 
