@@ -21,11 +21,14 @@
 
 namespace contract {
 
-enum class Model { central, transverse, far_friction };
+enum class Model { central, transverse, far_friction, spinning };
 enum class Geometry { walls, periodic, open, obstacles, suspension, rods, sheared };
 
 inline std::string name(Model model) {
-  return model == Model::central ? "central" : model == Model::transverse ? "transverse" : "far";
+  return model == Model::central      ? "central"
+         : model == Model::transverse ? "transverse"
+         : model == Model::spinning   ? "spinning"
+                                      : "far";
 }
 inline std::string name(Geometry geometry) {
   return geometry == Geometry::walls       ? "walls"
@@ -91,7 +94,14 @@ odpd::SceneSettings<D> settings(Model model, Geometry geometry, double length) {
     p.gamma_far = 0.1;
     p.cutoff_far = 1.5;
   }
-  s.model = odpd::make_dpd<D>(p);
+  if (model == Model::spinning) {
+    // A third of the fluid does not spin. Walls and bodies are of the first species.
+    s.species = {{.name = "a", .fraction = 0.4, .lever_radius = 0.3},
+                 {.name = "b", .fraction = 0.3, .lever_radius = 0.7},
+                 {.name = "c", .fraction = 0.3}};
+    p.gamma_perp = 1.5;
+  }
+  s.model = odpd::make_dpd<D>(p, static_cast<int>(s.species.size()));
   if (geometry == Geometry::sheared) {
     s.box.shear = odpd::Shear{.flow = 0, .gradient = D - 1, .rate = 2.0, .start = 0.37 * length};
     s.box = s.box.at(0.0);
@@ -120,9 +130,10 @@ odpd::SceneSettings<D> settings(Model model, Geometry geometry, double length) {
 template <int D>
 class Instant {
  public:
-  Instant(Model model, Geometry geometry, double length, bool hold = false,
+  Instant(Model kind, Geometry geometry, double length, bool hold = false,
           const odpd::Communicator& ranks = odpd::Communicator::alone())
-      : scene(settings<D>(model, geometry, length), ranks),
+      : model(kind),
+        scene(settings<D>(kind, geometry, length), ranks),
         dynamics(scene.box(), scene.particles(), scene.model(), scene, odpd::make_solver({}),
                  {.hold_centre_of_mass = hold}) {
     // One thread, or the threads of several test programs at once wait for each other.
@@ -133,9 +144,10 @@ class Instant {
     system = &dynamics.assemble(stage, {});
     load = dynamics.force(stage);
     for (std::size_t k = 0; k < load.size(); ++k) load[k] += xi[k];
-    rigid().scale_load(load);
+    spins().scale_load(load);
   }
 
+  const Model model;
   odpd::Scene<D> scene;
   odpd::Dynamics<D> dynamics;
   odpd::Stage<D> stage;
@@ -145,6 +157,7 @@ class Instant {
 
   const odpd::Resistance<D>& resistance() const { return dynamics.resistance(); }
   const odpd::RigidResistance<D>& rigid() const { return dynamics.rigid_resistance(); }
+  const odpd::SpinResistance<D>& spins() const { return dynamics.spin_resistance(); }
 };
 
 /// The instant of these arguments, made once in a program: filling and relaxing a box takes longer
@@ -174,16 +187,19 @@ inline double true_residual(const odpd::System& system, std::vector<double> b,
 
 // Random vectors orthonormal in the inner product of A: the noise along them, in units of sqrt(2 kT/dt), must be independent
 // standard normal numbers.
-// `map`: of bodies, whose turns that move nobody have no noise.
+// `map`: of bodies, whose turns that move nobody have no noise; `spins`: nodes of as many spins in front.
 template <int D>
 std::vector<std::vector<double>> probes(const odpd::System& system, std::size_t count,
-                                        const odpd::RigidMap<D>& map) {
+                                        const odpd::RigidMap<D>& map, std::int64_t spins) {
   std::vector<std::vector<double>> found;
   for (std::size_t k = 0; k < count; ++k) {
     std::vector<double> a =
         support::random_numbers(static_cast<std::size_t>(system.size()), 100 + k);
-    for (std::size_t b = 0; b < static_cast<std::size_t>(map.bodies()); ++b) {
-      const auto& unused = map.unused(b);
+    const auto front = static_cast<std::size_t>(spins);
+    for (std::size_t s = 0; s < front; ++s)
+      for (std::size_t c = odpd::rotation_components<D>; c < D; ++c) a[s * D + c] = 0.0;
+    for (std::size_t b = front; b < front + static_cast<std::size_t>(map.bodies()); ++b) {
+      const auto& unused = map.unused(b - front);
       const std::vector<double> w(&a[b * D], &a[(b + 1) * D]);
       for (std::size_t i = 0; i < D * D; ++i) a[b * D + i / D] -= unused[i] * w[i % D];
     }
@@ -206,7 +222,7 @@ void expect_noise_covariance(const Instant<D>& instant, const odpd::System& syst
   constexpr std::size_t n = 1250, K = 16;
   constexpr double dt = 0.013, kT = 0.7;
   const odpd::DofMap<D> dofs(instant.scene.particles());
-  const auto a = probes(system, K, instant.rigid().map());
+  const auto a = probes(system, K, instant.rigid().map(), instant.spins().spins());
   std::array<std::array<double, K>, K> mean{};
   std::vector<odpd::Vec<D>> on_edges;
   std::vector<double> xi;
@@ -214,8 +230,10 @@ void expect_noise_covariance(const Instant<D>& instant, const odpd::System& syst
     odpd::draw_edge_noise(instant.stage.network, instant.scene.particles(), 1, step, dt, on_edges);
     std::vector<odpd::Vec<D>> force(instant.stage.position.size());
     odpd::add_edge_forces<D>(instant.stage.network, on_edges, force);
-    dofs.gather(instant.stage.arms, force, xi);
-    instant.rigid().scale_load(xi);
+    std::vector<odpd::Vec<D>> torque(instant.stage.spin.size());
+    odpd::add_edge_torques<D>(instant.stage.network, on_edges, torque);
+    dofs.gather(instant.stage.arms, force, torque, xi);
+    instant.spins().scale_load(xi);
     std::array<double, K> z{};
     for (std::size_t k = 0; k < K; ++k) z[k] = support::dot(a[k], xi) / std::sqrt(2.0 * kT / dt);
     for (std::size_t k = 0; k < K; ++k) {

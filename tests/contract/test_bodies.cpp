@@ -26,26 +26,36 @@ class Bodies : public ::testing::TestWithParam<std::tuple<Model, Geometry, int>>
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(All, Bodies,
-                         ::testing::Combine(::testing::Values(Model::central, Model::transverse),
-                                            ::testing::Values(Geometry::obstacles,
-                                                              Geometry::suspension, Geometry::rods,
-                                                              Geometry::sheared),
-                                            ::testing::Values(2, 3)),
-                         [](const auto& test) {
-                           return contract::name(std::get<0>(test.param)) + "_" +
-                                  contract::name(std::get<1>(test.param)) + "_" +
-                                  std::to_string(std::get<2>(test.param)) + "D";
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    All, Bodies,
+    ::testing::Combine(::testing::Values(Model::central, Model::transverse, Model::spinning),
+                       ::testing::Values(Geometry::obstacles, Geometry::suspension, Geometry::rods,
+                                         Geometry::sheared),
+                       ::testing::Values(2, 3)),
+    [](const auto& test) {
+      return contract::name(std::get<0>(test.param)) + "_" +
+             contract::name(std::get<1>(test.param)) + "_" +
+             std::to_string(std::get<2>(test.param)) + "D";
+    });
 
-// P by its definition, from poses and the unknowns of `system`, not by DofMap.
+// P by its definition, from poses and the unknowns of `system`, not by DofMap. Spins are empty where nobody spins.
 template <int D>
-std::vector<Vec<D>> rigid_velocities(const contract::Instant<D>& instant, std::vector<double> x) {
-  instant.rigid().unscale_velocity(x);
+odpd::ParticleMotions<D> rigid_motions(const contract::Instant<D>& instant, std::vector<double> x) {
+  instant.spins().unscale_velocity(x);
+  odpd::ParticleMotions<D> motions;
+  std::vector<Vec<D>>&v = motions.velocity, &spin = motions.spin;
   const auto& particles = instant.scene.particles();
   const odpd::DofMap<D> dofs(particles);
   const auto bodies = static_cast<std::size_t>(dofs.bodies());
-  std::vector<Vec<D>> v(particles.position.size());
+  v.resize(particles.position.size());
+  spin.resize(dofs.any_spin() ? v.size() : 0);
+  std::size_t of_spins = 0;
+  for (std::size_t i = 0; i < spin.size(); ++i)
+    if (particles.spins(i)) {
+      for (std::size_t c = 0; c < D; ++c) spin[i].x[c] = x[of_spins * D + c];
+      ++of_spins;
+    }
+  x.erase(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(of_spins * D));
   std::size_t node = bodies;
   for (std::size_t i = 0; i < v.size(); ++i)
     if (particles.is_free(i)) {
@@ -58,8 +68,10 @@ std::vector<Vec<D>> rigid_velocities(const contract::Instant<D>& instant, std::v
       const Vec<D> a = body.pose.orientation.turn(body.frame[k]);
       Vec<D> w;
       for (std::size_t c = 0; c < D; ++c) w.x[c] = x[b * D + c];
-      Vec<D>& u = v[static_cast<std::size_t>(
-          particles.index_of_id()[static_cast<std::size_t>(body.members[k])])];
+      const auto p = static_cast<std::size_t>(
+          particles.index_of_id()[static_cast<std::size_t>(body.members[k])]);
+      if (!spin.empty()) spin[p] = w;
+      Vec<D>& u = v[p];
       for (std::size_t c = 0; c < D; ++c) u.x[c] = x[(node + b) * D + c];
       if constexpr (D == 2) {
         u += Vec<2>{{-w[0] * a[1], w[0] * a[0]}};
@@ -68,7 +80,7 @@ std::vector<Vec<D>> rigid_velocities(const contract::Instant<D>& instant, std::v
             {w[1] * a[2] - w[2] * a[1], w[2] * a[0] - w[0] * a[2], w[0] * a[1] - w[1] * a[0]}};
       }
     }
-  return v;
+  return motions;
 }
 
 // What x and y have in common along turns that move nobody.
@@ -77,19 +89,24 @@ double unused_part(const contract::Instant<D>& instant, const std::vector<double
                    const std::vector<double>& y) {
   const odpd::RigidMap<D>& map = instant.rigid().map();
   double sum = 0.0;
+  const auto front = static_cast<std::size_t>(instant.spins().spins());
+  for (std::size_t s = 0; s < front; ++s)
+    for (std::size_t c = odpd::rotation_components<D>; c < D; ++c)
+      sum += x[s * D + c] * y[s * D + c];
   for (std::size_t b = 0; b < static_cast<std::size_t>(map.bodies()); ++b)
     for (std::size_t row = 0; row < D; ++row)
       for (std::size_t col = 0; col < D; ++col)
-        sum += x[b * D + row] * map.unused(b)[row * D + col] * y[b * D + col];
+        sum += x[(front + b) * D + row] * map.unused(b)[row * D + col] * y[(front + b) * D + col];
   return sum;
 }
 
 // So norms are those of velocities and forces of particles, in the same units whatever the body.
 TEST_P(Bodies, UnknownsMapOrthonormallyToParticles) {
+  if (std::get<0>(GetParam()) == Model::spinning) GTEST_SKIP() << "spins are no velocities";
   run([&]<int D>(const contract::Instant<D>& instant) {
     const auto n = static_cast<std::size_t>(instant.system->size());
     const auto x = support::random_numbers(n, 3), y = support::random_numbers(n, 4);
-    const auto vx = rigid_velocities(instant, x), vy = rigid_velocities(instant, y);
+    const auto vx = rigid_motions(instant, x).velocity, vy = rigid_motions(instant, y).velocity;
     double product = unused_part(instant, x, y);
     for (std::size_t i = 0; i < vx.size(); ++i) product += dot(vx[i], vy[i]);
     EXPECT_NEAR(product, support::dot(x, y), 1e-12 * support::norm(x) * support::norm(y));
@@ -113,16 +130,18 @@ TEST_P(Bodies, TheSystemIsPTRP) {
   run([&]<int D>(const contract::Instant<D>& instant) {
     const odpd::System& system = *instant.system;
     const auto n = static_cast<std::size_t>(system.size());
-    ASSERT_EQ(system.nodes(), instant.scene.particles().free_count() + 4);
+    ASSERT_EQ(system.nodes(), instant.scene.particles().free_count() + 4 + instant.spins().spins());
     auto x = support::random_numbers(n, 1), y = support::random_numbers(n, 2);
     const auto ax = contract::product(system, x);
     // y . A x = P y . R P x, and the unused components stand alone.
     const double unused = unused_part(instant, x, y);
-    std::vector<Vec<D>> force(instant.stage.position.size());
-    const auto vx = rigid_velocities(instant, x), vy = rigid_velocities(instant, y);
-    odpd::add_friction_forces<D>(instant.stage.network, vx, force);
+    const auto of_x = rigid_motions(instant, x), of_y = rigid_motions(instant, y);
+    std::vector<Vec<D>> force(instant.stage.position.size()), torque(of_x.spin.size());
+    odpd::add_friction_forces<D>(instant.stage.network, of_x.velocity, force, of_x.spin);
+    odpd::add_friction_torques<D>(instant.stage.network, of_x.velocity, of_x.spin, torque);
     double expected = unused;
-    for (std::size_t i = 0; i < force.size(); ++i) expected -= dot(vy[i], force[i]);
+    for (std::size_t i = 0; i < force.size(); ++i) expected -= dot(of_y.velocity[i], force[i]);
+    for (std::size_t i = 0; i < torque.size(); ++i) expected -= dot(of_y.spin[i], torque[i]);
     EXPECT_NEAR(support::dot(y, ax), expected, 1e-11 * support::norm(ax) * support::norm(y));
     // The assembled matrix and its diagonal blocks say the same.
     const odpd::BlockCsr& m = system.matrix();
@@ -145,7 +164,7 @@ TEST_P(Bodies, TheSystemIsPTRP) {
 }
 
 TEST_P(Bodies, NoiseHasTheCovarianceOfFluctuationDissipation) {
-  if (std::get<0>(GetParam()) != Model::central) GTEST_SKIP() << "one model suffices";
+  if (std::get<0>(GetParam()) == Model::transverse) GTEST_SKIP() << "two models suffice";
   run([&]<int D>(const contract::Instant<D>& instant) {
     contract::expect_noise_covariance(instant, *instant.system);
   });
@@ -191,14 +210,19 @@ TEST_P(Bodies, ForceAndTorqueBalance) {
     solver->bind(*instant.system);
     std::vector<double> x(instant.load.size(), 0.0);
     ASSERT_TRUE(solver->solve(instant.load, x).converged);
-    std::vector<Vec<D>> velocity = rigid_velocities(instant, x);
+    auto [velocity, spin] = rigid_motions(instant, x);
     const auto& particles = instant.scene.particles();
     for (std::size_t i = 0; i < velocity.size(); ++i)
       if (particles.is_known(i)) velocity[i] = instant.stage.velocity[i];
-    std::vector<Vec<D>> force(velocity.size()), on_edges;
+    for (std::size_t i = 0; i < spin.size(); ++i)
+      if (particles.is_known(i)) spin[i] = instant.stage.spin[i];
+    std::vector<Vec<D>> force(velocity.size()), torque(spin.size()), on_edges;
     odpd::draw_edge_noise(instant.stage.network, particles, 1, 3, 0.01, on_edges);
     odpd::add_conservative_forces(instant.stage.network, force);
-    odpd::add_friction_forces<D>(instant.stage.network, velocity, force);
+    odpd::add_friction_forces<D>(instant.stage.network, velocity, force, spin);
+    odpd::add_friction_torques<D>(instant.stage.network, velocity, spin, torque);
+    odpd::add_sliding_torques<D>(instant.stage.network, torque);
+    odpd::add_edge_torques<D>(instant.stage.network, on_edges, torque);
     odpd::add_sliding_friction(instant.stage.network, force);
     odpd::add_edge_forces<D>(instant.stage.network, on_edges, force);
     instant.scene.add_potential_forces(particles, instant.stage.position, force);
@@ -214,6 +238,7 @@ TEST_P(Bodies, ForceAndTorqueBalance) {
         arms.push_back(body.pose.orientation.turn(body.frame[k]));
         f += force[p];
         t += odpd::torque(arms.back(), force[p]);
+        if (!torque.empty()) t += torque[p];
         size += norm(force[p]);
       }
       if (odpd::rotations<D>(arms) < odpd::rotation_components<D>) {
