@@ -2,6 +2,7 @@
 
 #include "odpd/core/parallel.h"
 #include "odpd/operator/edge_sums.h"
+#include "odpd/pairs/levers.h"
 #include "support/dimensions.h"
 #include "support/network.h"
 
@@ -160,6 +161,38 @@ TYPED_TEST(EdgeSumsTest, FrictionOfKnownParticlesIsThatOfTheirMotionAlone) {
     moved += norm(all[i]) > 0.0 ? 1 : 0;
   }
   EXPECT_GT(moved, 10u);
+}
+
+// The same where particles spin: force and torque, with levers of both ends.
+TYPED_TEST(EdgeSumsTest, FrictionOfKnownSpinsIsThatOfTheirMotionAlone) {
+  constexpr int D = TypeParam::D;
+  Fluid<D> fluid(5.0, true, D == 2 ? 120 : 500, 2, 1.0);
+  const std::size_t n = fluid.particles.position.size();
+  fluid.particles.spin_of_species = {{.lever_radius = 0.3}, {.lever_radius = 0.8}};
+  for (std::size_t i = 0; i < n; ++i) fluid.particles.species[i] = static_cast<int>(i % 2);
+  fluid.connect(DpdModel<D>(2, std::vector(4, transverse())));
+  odpd::write_levers(fluid.particles, fluid.network);
+  auto velocity = support::random_vectors<D>(n, 2), spin = support::random_vectors<D>(n, 3);
+  std::vector<std::int32_t> known;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (fluid.particles.is_free(i)) {
+      velocity[i] = spin[i] = Vec<D>{};
+    } else {
+      known.push_back(static_cast<std::int32_t>(i));
+    }
+  }
+  std::vector<Vec<D>> all(n), some(n), all_torques(n), some_torques(n);
+  odpd::add_friction_forces<D>(fluid.network, velocity, all, spin);
+  odpd::add_friction_torques<D>(fluid.network, velocity, spin, all_torques);
+  odpd::add_known_friction<D>(fluid.network, known, velocity, spin, some, some_torques);
+  double turned = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!fluid.particles.is_free(i)) continue;
+    EXPECT_LT(norm(some[i] - all[i]), 1e-13);
+    EXPECT_LT(norm(some_torques[i] - all_torques[i]), 1e-13);
+    turned += norm(all_torques[i]);
+  }
+  EXPECT_GT(turned, 1.0);
 }
 
 }  // namespace
