@@ -128,7 +128,7 @@ void Comparison<D>::product() {
     const double rebuild = std::min(p.rebuild(), p.rebuild());
     std::vector<double> y(p.load.size());
     const double apply = best_seconds([&] { p.system().apply(p.load, y); });
-    const Packed packed = pack_and_multiply(p.resistance.mobile());
+    const Packed packed = pack_and_multiply(p.resistance.velocities().mobile());
     const double n = static_cast<double>(spec_.particles);
     row.insert(row.end(),
                {digits(p.neighbours()), digits(1e9 * rebuild / n), digits(1e9 * apply / n),

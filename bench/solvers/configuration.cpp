@@ -103,7 +103,13 @@ odpd::SceneSettings<D> scene_settings(const FluidSpec& spec, bool whole) {
     p.gamma_far = 0.1;
     p.cutoff_far = 1.5;
   }
-  s.model = spec.support > 0.0 ? sdpd_model<D>(spec) : odpd::make_dpd<D>(p);
+  p.gamma_perp = spec.gamma_perp;
+  // Positions do not depend on friction, so a start is made without spins.
+  const bool spins = whole && spec.spinning > 0.0;
+  s.model = spec.support > 0.0 ? sdpd_model<D>(spec) : odpd::make_dpd<D>(p, spins ? 2 : 1);
+  if (spins)
+    s.species = {{.name = "plain", .fraction = 1.0 - spec.spinning},
+                 {.name = "spinning", .fraction = spec.spinning, .lever_radius = 0.5}};
   s.box.periodic.fill(true);
   const int directions = spec.walls ? D - 1 : D;
   const std::int64_t parts = parts_of<D>(spec), in = whole ? 1 : parts, of = parts / in;
@@ -276,7 +282,7 @@ double Problem<D>::rebuild() {
   const odpd::Stopwatch watch;
   resistance.slide(stage.box);
   resistance.rebuild(stage.network, dynamics->dofs(), scene->particles(), stage.position,
-                     stage.arms, spec.shift, stiffness_time);
+                     stage.arms, {.drag = spec.shift}, stiffness_time);
   const double seconds = watch.seconds();
   if (!load_scaled_) resistance.scale_load(load);
   load_scaled_ = true;

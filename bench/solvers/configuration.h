@@ -34,6 +34,8 @@ struct FluidSpec {
   std::optional<BodySpec> bodies = {};  ///< rigid ones that move freely
   double shear = 0.0;                   ///< rate; the start is sheared for 20 steps (1/time)
   bool held = false;                    ///< the centre of mass is held
+  double gamma_perp = 0.0;              ///< friction across lines of centres
+  double spinning = 0.0;                ///< part of the free particles, with lever radii of 1/2
 
   std::string geometry() const { return walls ? "walls" : "periodic"; }
 };
@@ -73,7 +75,7 @@ class Problem {
   std::unique_ptr<odpd::Dynamics<D>> dynamics;
   odpd::Stage<D> stage;
   std::vector<double> load;  ///< for `system`, from the first `rebuild` on
-  odpd::RigidResistance<D> resistance;
+  odpd::SpinResistance<D> resistance;
   double stiffness_time = 0.0;  ///< weight of k_c in A (time)
 
  private:

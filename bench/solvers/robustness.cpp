@@ -33,6 +33,7 @@ class Robustness {
  private:
   void fluids(bool walls);
   void sdpd(bool walls);
+  void spins(bool walls);
   void obstacles();
   void gaps(bool walls);
   void bonds(bool walls);
@@ -118,6 +119,18 @@ void Robustness<D>::sdpd(bool walls) {
             {.walls = walls, .particles = particles_, .support = support, .classical = classical});
 }
 
+/// Friction across lines of centres, and who spins of it: nobody, one in a hundred, all. (Without spins it is no viscous fluid.)
+template <int D>
+void Robustness<D>::spins(bool walls) {
+  for (const double gamma_perp : {2.25, 4.5, 9.0})
+    for (const double spinning : {0.0, 0.01, 1.0})
+      solve(fmt::format("gamma_perp = {:g}; spinning {:g}", gamma_perp, spinning),
+            {.walls = walls,
+             .particles = particles_,
+             .gamma_perp = gamma_perp,
+             .spinning = spinning});
+}
+
 template <int D>
 void Robustness<D>::obstacles() {
   for (const std::int64_t count : {std::int64_t{4}, std::int64_t{20}})
@@ -163,6 +176,7 @@ void Robustness<D>::run() {
   for (const bool walls : {false, true}) {
     fluids(walls);
     sdpd(walls);
+    spins(walls);
     if (!walls) obstacles();
     gaps(walls);
     bonds(walls);

@@ -27,7 +27,7 @@ class CgEngine {
   virtual void remember(bool /*on*/) {}
 };
 
-/// Null unless the system is a Resistance or a RigidResistance.
+/// Null unless the system is a Resistance, or a RigidResistance or SpinResistance around one (of the latter without spins of bodies).
 std::unique_ptr<CgEngine> make_mixed_cg(const System& system, const SolverOptions& options);
 
 /// Residuals of conjugate gradients rise and fall, but never by this much on a regular system.

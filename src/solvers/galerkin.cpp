@@ -34,8 +34,8 @@ template <int D>
 class Elements {
  public:
   Elements(const GridShape<D>& shape, const Resistance<D>& resistance,
-           const RigidResistance<D>* rigid, double moment)
-      : shape_(shape), resistance_(resistance), rigid_(rigid) {
+           const RigidResistance<D>* rigid, double moment, const SpinResistance<D>* spins)
+      : shape_(shape), resistance_(resistance), rigid_(rigid), spins_(spins) {
     if (rigid != nullptr) stiffen(moment / (2.0 * D * (D + 2)));
     std::int64_t cells = 1;
     for (int c = 0; c < 4; ++c) {
@@ -51,6 +51,7 @@ class Elements {
     place_nodes();
     if (!resistance.g().empty()) edges_.g = resistance.g().front().x.data();
     if (resistance.transverse()) edges_.across = &resistance.across().front().zeta_perp;
+    if (spins != nullptr) leave_along();
   }
   void add_node(std::int64_t n);
   /// What all ranks added.
@@ -66,14 +67,6 @@ class Elements {
 
   /// inside_ of a constituent with this tau, in units of the grid, which shear tilts.
   void stiffen(double tau) {
-    std::array<Vec<D>, D> axis{};  // the grid's, per axis of space
-    const Box<D>& box = resistance_.box();
-    for (std::size_t c = 0; c < D; ++c) axis[c].x[c] = 1.0;
-    if (box.shear)
-      axis[index(box.shear->gradient)][box.shear->flow] =
-          -box.offset / box.size[box.shear->gradient];
-    for (Vec<D>& unit : axis)
-      for (std::size_t a = 0; a < D; ++a) unit.x[a] *= shape_.per_length.x[a];
     const RigidMap<D>& map = rigid_->map();
     for (std::size_t b = 0; b < index(map.bodies()); ++b) {
       double radius = 0.0;  // in units of the grid
@@ -84,15 +77,60 @@ class Elements {
       }
       stiffness_.push_back(static_cast<float>(stiffness_per_radius * radius));
     }
-    float* out = inside_.data();
+    inside_ = isotropic(tau, tau);
+  }
+  using Moments = std::array<float, index(triangle* triangle)>;
+  /// The moments of  squares |grad v|^2 + crosses (d_a v_b d_b v_a + (div v)^2)  as kernels want them.
+  Moments isotropic(double squares, double crosses) const {
+    const std::array<Vec<D>, D> axis = grid_slopes(resistance_.box(), shape_);
+    Moments moments;
+    float* out = moments.data();
     for (std::size_t a = 0; a < D; ++a)
       for (std::size_t b = a; b < D; ++b)
         for (std::size_t c = 0; c < D; ++c)
           for (std::size_t d = c; d < D; ++d) {
-            double sum = axis[c].x[a] * axis[d].x[b] + axis[d].x[a] * axis[c].x[b];
-            for (std::size_t k = 0; c == d && k < D; ++k) sum += axis[k].x[a] * axis[k].x[b];
-            *out++ = static_cast<float>(tau * sum);
+            double square = 0.0;
+            const double cross = axis[c].x[a] * axis[d].x[b] + axis[d].x[a] * axis[c].x[b];
+            for (std::size_t k = 0; c == d && k < D; ++k) square += axis[k].x[a] * axis[k].x[b];
+            *out++ = static_cast<float>(squares * square + crosses * cross);
           }
+    return moments;
+  }
+  /// Friction across e sees a spin.
+  bool has_levers(std::size_t node, const typename Resistance<D>::Link& link) const {
+    return spins_ != nullptr && resistance_.across(link).zeta_perp > 0.0 &&
+           (spins_->spin_of(node) >= 0 || spins_->spin_of(index(link.node)) >= 0);
+  }
+  /// Leaves of edges with levers the friction along them.
+  void leave_along() {
+    g_.assign(resistance_.g().begin(), resistance_.g().end());
+    across_.assign(resistance_.across().begin(), resistance_.across().end());
+    edges_ = {g_.front().x.data(), &across_.front().zeta_perp};
+    parallel_for(resistance_.nodes(), [&](std::int64_t n) {
+      for (const auto& link : resistance_.links(index(n))) {
+        if (link.node < n || !has_levers(index(n), link)) continue;
+        Vec<D>& g = g_[index(link.edge)];
+        auto& across = across_[index(link.edge)];
+        const double along = across.sign * dot(g, g) + across.zeta_perp;
+        const Vec<D> d = resistance_.box().separation(resistance_.position(index(n)),
+                                                      resistance_.position(index(link.node)));
+        g = std::sqrt(std::max(along, 0.0) / dot(d, d)) * d;
+        across = {};
+      }
+    });
+    constexpr double shares = D * (D + 2);
+    turning_ = isotropic(0.5 * D / shares, (0.25 * D - 0.5) / shares);
+  }
+  /// The node's half of zeta_perp r^2 of edges with levers.
+  double turned(std::size_t node) const {
+    double sum = 0.0;
+    for (const auto& link : resistance_.links(node)) {
+      if (!has_levers(node, link)) continue;
+      const Vec<D> d = resistance_.box().separation(resistance_.position(node),
+                                                    resistance_.position(index(link.node)));
+      sum += 0.5 * resistance_.across(link).zeta_perp * dot(d, d);
+    }
+    return sum;
   }
   void place_nodes() {
     positions_.resize(4 * resistance_.nodes());
@@ -108,9 +146,12 @@ class Elements {
   const GridShape<D>& shape_;
   const Resistance<D>& resistance_;
   const RigidResistance<D>* rigid_;
+  const SpinResistance<D>* spins_;
   std::vector<float> stiffness_;  // per body
-  std::array<float, index(triangle* triangle)>
-      inside_{};  // moments of a constituent, as kernels want them
+  Moments inside_{};              // of a constituent
+  Moments turning_{};             // of zeta_perp r^2 of edges with levers
+  std::vector<Vec<D>> g_;         // of all edges, where some have levers: the friction left to them
+  std::vector<typename Resistance<D>::Across> across_;
   ElementView view_{};
   EdgeView edges_{};
   FloatArray positions_, sums_;
@@ -127,10 +168,19 @@ void Elements<D>::add_node(std::int64_t n) {
   Triangle<D> anchor{};
   if (!resistance_.anchors().empty()) anchor = triangle_of<D>(resistance_.anchors()[node]);
   const bool of_body = rigid_ != nullptr && rigid_->is_constituent(node);
+  const float* inside = of_body ? inside_.data() : nullptr;
+  float stiffness = of_body ? stiffness_[rigid_->body_of(node)] : 0.0F;
+  Moments both;
+  if (spins_ != nullptr) {
+    const auto more = static_cast<float>(turned(node));
+    for (std::size_t k = 0; k < both.size(); ++k)
+      both[k] = stiffness * inside_[k] + more * turning_[k];
+    inside = both.data();
+    stiffness = 1.0F;
+  }
   multilevel_kernels().add_node[D - 2](
       view_, edges_, n, reinterpret_cast<const std::int32_t*>(links.data()), std::ssize(links),
-      resistance_.anchors().empty() ? nullptr : anchor.data(), of_body ? inside_.data() : nullptr,
-      of_body ? stiffness_[rigid_->body_of(node)] : 0.0F);
+      resistance_.anchors().empty() ? nullptr : anchor.data(), inside, stiffness);
 }
 
 template <int D>
@@ -189,6 +239,17 @@ GridPosition<D> locate(const GridShape<D>& shape, const double* position) {
 }
 
 template <int D>
+std::array<Vec<D>, D> grid_slopes(const Box<D>& box, const GridShape<D>& shape) {
+  std::array<Vec<D>, D> axis{};
+  for (std::size_t c = 0; c < D; ++c) axis[c].x[c] = 1.0;
+  if (box.shear)
+    axis[index(box.shear->gradient)][box.shear->flow] = -box.offset / box.size[box.shear->gradient];
+  for (Vec<D>& unit : axis)
+    for (std::size_t a = 0; a < D; ++a) unit.x[a] *= shape.per_length.x[a];
+  return axis;
+}
+
+template <int D>
 FrictionSpread friction_spread(const Resistance<D>& resistance, const RigidResistance<D>* rigid) {
   const Share share = resistance.share();
   std::array<double, 5> sums{};
@@ -232,8 +293,9 @@ FrictionSpread friction_spread(const Resistance<D>& resistance, const RigidResis
 
 template <int D>
 GridOperator<D> galerkin(const Resistance<D>& resistance, const GridShape<D>& shape,
-                         const RigidResistance<D>* rigid, double moment) {
-  Elements<D> elements(shape, resistance, rigid, moment);
+                         const RigidResistance<D>* rigid, double moment,
+                         const SpinResistance<D>* spins) {
+  Elements<D> elements(shape, resistance, rigid, moment, spins);
   const Share share = resistance.share();
   for (std::int64_t n = share.first; n < share.end(resistance.nodes()); ++n) elements.add_node(n);
   elements.add_ranks(*share.ranks);
@@ -246,11 +308,13 @@ template Vec<2> grid_position<2>(const Resistance<2>&, std::size_t);
 template Vec<3> grid_position<3>(const Resistance<3>&, std::size_t);
 template GridPosition<2> locate<2>(const GridShape<2>&, const double*);
 template GridPosition<3> locate<3>(const GridShape<3>&, const double*);
+template std::array<Vec<2>, 2> grid_slopes<2>(const Box<2>&, const GridShape<2>&);
+template std::array<Vec<3>, 3> grid_slopes<3>(const Box<3>&, const GridShape<3>&);
 template FrictionSpread friction_spread<2>(const Resistance<2>&, const RigidResistance<2>*);
 template FrictionSpread friction_spread<3>(const Resistance<3>&, const RigidResistance<3>*);
 template GridOperator<2> galerkin<2>(const Resistance<2>&, const GridShape<2>&,
-                                     const RigidResistance<2>*, double);
+                                     const RigidResistance<2>*, double, const SpinResistance<2>*);
 template GridOperator<3> galerkin<3>(const Resistance<3>&, const GridShape<3>&,
-                                     const RigidResistance<3>*, double);
+                                     const RigidResistance<3>*, double, const SpinResistance<3>*);
 
 }  // namespace odpd

@@ -41,17 +41,26 @@ constexpr const char* no_grid_for_null_motions =
 template <int D>
 void MixedCg<D>::set_up(const System& system) {
   system_ = &system;
-  rigid_ = dynamic_cast<const RigidResistance<D>*>(&system);
-  resistance_ = rigid_ != nullptr ? &rigid_->mobile() : &dynamic_cast<const Resistance<D>&>(system);
+  spins_ = dynamic_cast<const SpinResistance<D>*>(&system);
+  in_front_ = spins_ != nullptr ? spins_->spins() : 0;
+  const System& velocities = spins_ != nullptr ? spins_->velocities().system() : system;
+  rigid_ = dynamic_cast<const RigidResistance<D>*>(&velocities);
+  resistance_ =
+      rigid_ != nullptr ? &rigid_->mobile() : &dynamic_cast<const Resistance<D>&>(velocities);
   share_ = resistance_->share();
   rows_.pack(*resistance_);
+  if (spins_ != nullptr) {
+    spin_rows_.pack(*spins_, rows_);
+  } else {
+    spin_rows_.clear();
+  }
   note_.clear();
   with_grid_ = preconditioner_ == "multilevel" || (preconditioner_ == "auto" && grid_pays());
   if (with_grid_ && !system.null_motions().empty()) {
     if (preconditioner_ == "multilevel") note_ = no_grid_for_null_motions;
     with_grid_ = false;
   }
-  for (FloatArray* v : {&r_, &z_, &p_, &q_, &x_}) v->resize(rows_.vector_size());
+  for (FloatArray* v : {&r_, &z_, &p_, &q_, &x_}) v->resize(places() * stride);
   residual_.resize(index(system.size()));
   sums_.resize(index(2 * blocks()));
   invert_diagonal();
@@ -60,9 +69,10 @@ void MixedCg<D>::set_up(const System& system) {
   } else {
     bodies_.clear();
   }
-  if (with_grid_) grid_.set_up(*resistance_, rows_, rigid_);
+  if (with_grid_) grid_.set_up(*resistance_, rows_, rigid_, spins_);
   local_ = grid_.local();
-  t_.resize(with_grid_ && local_.size() > 2 ? rows_.vector_size() : 0);
+  t_.resize(with_grid_ && local_.size() > 2 ? places() * stride : 0);
+  if (spins_ != nullptr) t_.fill(0.0F);  // nobody else writes to empty places of spins
 }
 
 template <int D>
@@ -85,22 +95,40 @@ bool MixedCg<D>::grid_pays() const {
 
 template <int D>
 void MixedCg<D>::invert_diagonal() {
-  inverse_.resize(rows_.places() * triangle);
-  std::atomic<std::int64_t> first_bad{resistance_->nodes()};
+  inverse_.resize(places() * triangle);
+  const std::int64_t none = system_->nodes();
+  std::atomic<std::int64_t> first_bad{none};
   parallel_for(rows_.places(), [&](std::int64_t place) {
     const std::int32_t node = rows_.node_of_place()[index(place)];
-    float* out =
-        inverse_.data() + place / slice_places * slice_places * triangle + place % slice_places;
     typename Resistance<D>::Block m{};  // zero for constituents of bodies
     if (node >= 0 && !is_constituent(node)) m = inverse_of(resistance_->diagonal()[index(node)]);
-    if (std::isnan(m[0]) && share_.owns(std::int64_t{node})) lower(first_bad, node);
-    for (std::size_t row = 0; row < D; ++row)
-      for (std::size_t col = row; col < D; ++col, out += slice_places)
-        *out = static_cast<float>(m[row * D + col]);
+    if (std::isnan(m[0]) && share_.owns(std::int64_t{node})) lower(first_bad, unknown_of(place));
+    set_inverse(place, m);
   });
+  if (spins_ != nullptr) {
+    for (std::int64_t place = rows_.places(); place < places(); ++place) set_inverse(place, {});
+    spin_blocks_.pack(*spins_, rows_, [&](std::int64_t place, const auto& m) {
+      if (std::isnan(m[0])) {
+        const std::int32_t node = unknown_of(place);
+        if (place < rows_.places() && share_.owns(node - in_front_)) lower(first_bad, node);
+      }
+      set_inverse(place, m);
+    });
+  } else {
+    spin_blocks_.clear();
+  }
   share_.ranks->together([&] {
-    if (first_bad < resistance_->nodes()) reject_block(first_bad);
+    if (first_bad < none) reject_block(first_bad);
   });
+}
+
+template <int D>
+void MixedCg<D>::set_inverse(std::int64_t place, const typename Resistance<D>::Block& inverse) {
+  float* out =
+      inverse_.data() + place / slice_places * slice_places * triangle + place % slice_places;
+  for (std::size_t row = 0; row < D; ++row)
+    for (std::size_t col = row; col < D; ++col, out += slice_places)
+      *out = static_cast<float>(inverse[row * D + col]);
 }
 
 /// residual_ := Pi (b - A x); returns its norm.
@@ -120,20 +148,20 @@ double MixedCg<D>::true_residual(std::span<const double> b, std::span<const doub
 
 template <int D>
 void MixedCg<D>::load_residual(double scale) {
-  parallel_for(rows_.places(), [&](std::int64_t place) {
+  parallel_for(places(), [&](std::int64_t place) {
     const std::int32_t node = unknown_of(place);
     float* const r = r_.data() + place * stride;
     for (std::int64_t c = 0; c < stride; ++c)
       r[c] = node >= 0 && c < D ? static_cast<float>(residual_[index(node * D + c)] / scale) : 0.0F;
   });
-  bodies_.scatter(residual_, scale, r_.data());
+  bodies_.scatter(std::span(residual_).subspan(index(in_front_ * D)), scale, r_.data());
 }
 
 /// x += scale d, d = 0.
 template <int D>
 void MixedCg<D>::flush(std::span<double> x, double scale) {
-  bodies_.add_to(x_.data(), scale, x);
-  parallel_for(rows_.places(), [&](std::int64_t place) {
+  bodies_.add_to(x_.data(), scale, x.subspan(index(in_front_ * D)));
+  parallel_for(places(), [&](std::int64_t place) {
     const std::int32_t node = unknown_of(place);
     float* const d = x_.data() + place * stride;
     for (std::int64_t c = 0; c < stride; ++c) {
@@ -152,12 +180,20 @@ double MixedCg<D>::sum_of_blocks() {
   return share_.ranks->sum(sum);
 }
 
+/// out = A in of a block of velocities and of their spins, wherever these stand; returns its part of in . out.
+template <int D>
+double MixedCg<D>::multiply(const FloatArray& in, FloatArray& out, std::int64_t block) {
+  const std::int64_t first = block * block_places, last = std::min(end_of(block), rows_.places());
+  if (first >= last) return 0.0;
+  const double work = rows_.product(in.data(), out.data(), first, last);
+  return spin_rows_.empty() ? work : work + spin_rows_.product(in.data(), out.data(), first, last);
+}
+
 /// q = A p; returns p . q.
 template <int D>
 double MixedCg<D>::product() {
-  parallel_blocks(blocks(), [&](std::int64_t block) {
-    sums_[index(block)] = rows_.product(p_.data(), q_.data(), block * block_places, end_of(block));
-  });
+  parallel_blocks(blocks(),
+                  [&](std::int64_t block) { sums_[index(block)] = multiply(p_, q_, block); });
   const double sum = sum_of_blocks();
   bodies_.project(q_.data());
   if (system_->holds_centre_of_mass()) project(q_);
@@ -169,9 +205,8 @@ template <int D>
 CgSums MixedCg<D>::update(double alpha) {
   parallel_blocks(Multilevel<D>::chunks(), [&](std::int64_t chunk) {
     if (with_grid_) grid_.clear_chunk(chunk);
-    const std::int64_t end = chunk_begin(rows_.places(), chunk + 1);
-    for (std::int64_t first = chunk_begin(rows_.places(), chunk); first < end;
-         first += block_places) {
+    const std::int64_t end = chunk_begin(places(), chunk + 1);
+    for (std::int64_t first = chunk_begin(places(), chunk); first < end; first += block_places) {
       const std::int64_t last = std::min(end, first + block_places);
       const CgSums sums = multilevel_kernels().update[D - 2](
           inverse_.data(), static_cast<float>(alpha), p_.data(), q_.data(), x_.data(), r_.data(),
@@ -189,30 +224,30 @@ CgSums MixedCg<D>::update(double alpha) {
     total[1] += sums_[index(2 * block + 1)];
   }
   share_.ranks->sum(std::span(total));
+  total[1] += spin_blocks_.couple(r_.data(), z_.data());
   return {total[0], total[1] + bodies_.solve(r_.data(), z_.data())};
 }
 
 /// out = keep z - step D^-1 A in, z = D^-1 r; returns z . A in.
 template <int D>
 double MixedCg<D>::local_step(double keep, double step, const FloatArray& in, FloatArray& out) {
-  const auto multiply = [&](std::int64_t block) {
-    rows_.product(in.data(), out.data(), block * block_places, end_of(block));
-  };
   const auto relax = [&](std::int64_t block) {
     sums_[index(block)] = multilevel_kernels().local[D - 2](
         inverse_.data(), static_cast<float>(keep), static_cast<float>(step), z_.data(), out.data(),
         block * block_places, end_of(block));
   };
-  if (bodies_.empty()) {
+  if (bodies_.empty() && spins_ == nullptr) {
     parallel_blocks(blocks(), [&](std::int64_t block) {
-      multiply(block);
+      multiply(in, out, block);
       relax(block);
     });
   } else {
-    parallel_blocks(blocks(), multiply);
+    parallel_blocks(blocks(), [&](std::int64_t block) { multiply(in, out, block); });
     bodies_.gather(out.data());
+    spin_blocks_.gather(out.data());
     parallel_blocks(blocks(), relax);
     bodies_.subtract(static_cast<float>(step), out.data());
+    spin_blocks_.subtract(static_cast<float>(step), out.data());
   }
   return sum_of_blocks();
 }
@@ -338,7 +373,7 @@ Solver::Attempt MixedCg<D>::attempt(std::span<const double> b, std::span<double>
                                     double tolerance, std::int64_t most_iterations) {
   Solver::Attempt result;
   const double goal = tolerance * system_->norm(b);
-  bodies_.settle_unused(b, x);
+  bodies_.settle_unused(b.subspan(index(in_front_ * D)), x.subspan(index(in_front_ * D)));
   guess_.assign(x.begin(), x.end());
   Outcome outcome = iterate(b, x, goal, most_iterations, result);
   if (with_grid_ && outcome == Outcome::gave_up) {
@@ -359,8 +394,8 @@ Solver::Attempt MixedCg<D>::attempt(std::span<const double> b, std::span<double>
 template <int D>
 std::int64_t MixedCg<D>::memory_bytes() const {
   const std::int64_t floats = inverse_.size() + 5 * r_.size() + t_.size();
-  return rows_.bytes() + bodies_.bytes() + (with_grid_ ? grid_.bytes() : 0) +
-         floats * static_cast<std::int64_t>(sizeof(float)) +
+  return rows_.bytes() + spin_rows_.bytes() + spin_blocks_.bytes() + bodies_.bytes() +
+         (with_grid_ ? grid_.bytes() : 0) + floats * static_cast<std::int64_t>(sizeof(float)) +
          static_cast<std::int64_t>(residual_.size() * sizeof(double));
 }
 

@@ -16,6 +16,7 @@
 #include "odpd/core/index.h"
 #include "odpd/solvers/multilevel.h"
 #include "odpd/solvers/packed_bodies.h"
+#include "odpd/solvers/spin_blocks.h"
 
 namespace odpd {
 
@@ -25,6 +26,8 @@ class MixedCg : public CgEngine {
   explicit MixedCg(const SolverOptions& options) : preconditioner_(options.preconditioner) {}
 
   bool serves(const System& system) const override {
+    if (const auto* spins = dynamic_cast<const SpinResistance<D>*>(&system))
+      return !SpinRows<D>::bodies_spin(*spins);
     return dynamic_cast<const Resistance<D>*>(&system) != nullptr ||
            dynamic_cast<const RigidResistance<D>*>(&system) != nullptr;
   }
@@ -49,14 +52,21 @@ class MixedCg : public CgEngine {
   }
   /// Node of the system whose unknowns a place holds, -1 for none of its own.
   std::int32_t unknown_of(std::int64_t place) const {
+    if (place >= rows_.places()) {
+      const std::int64_t spin = place - rows_.places();
+      return spin < in_front_ ? static_cast<std::int32_t>(spin) : -1;
+    }
     const std::int32_t row = rows_.node_of_place()[index(place)];
-    return rigid_ == nullptr || row < 0 ? row : rigid_->node_of(index(row));
+    const std::int32_t node = rigid_ == nullptr || row < 0 ? row : rigid_->node_of(index(row));
+    return node < 0 ? -1 : node + static_cast<std::int32_t>(in_front_);
   }
   bool grid_pays() const;
   void invert_diagonal();
+  void set_inverse(std::int64_t place, const typename Resistance<D>::Block& inverse);
   double true_residual(std::span<const double> b, std::span<const double> x);
   void load_residual(double scale);
   void flush(std::span<double> x, double scale);
+  double multiply(const FloatArray& in, FloatArray& out, std::int64_t block);
   double product();
   CgSums update(double alpha);
   double local_step(double keep, double step, const FloatArray& in, FloatArray& out);
@@ -65,20 +75,30 @@ class MixedCg : public CgEngine {
   void project(FloatArray& v);
   Outcome iterate(std::span<const double> b, std::span<double> x, double goal,
                   std::int64_t most_iterations, Solver::Attempt& result);
-  std::int64_t blocks() const { return (rows_.places() + block_places - 1) / block_places; }
+  /// Of velocities, then of spins.
+  std::int64_t places() const { return rows_.places() + spin_rows_.places(); }
+  std::int64_t blocks() const { return (places() + block_places - 1) / block_places; }
   /// A block's part in sums is that of the rank that owns its first node: places are sorted within blocks only.
-  bool owns(std::int64_t block) const { return share_.owns(block * block_places); }
+  /// Those of spins alone are the first rank's.
+  bool owns(std::int64_t block) const {
+    const std::int64_t first = block * block_places;
+    return first < rows_.places() ? share_.owns(first) : share_.ranks->rank() == 0;
+  }
   double sum_of_blocks();
   std::int64_t end_of(std::int64_t block) const {
-    return std::min(rows_.places(), (block + 1) * block_places);
+    return std::min(places(), (block + 1) * block_places);
   }
 
   std::string preconditioner_;
   const System* system_ = nullptr;
   const Resistance<D>* resistance_ = nullptr;  // R on the particles that move
   const RigidResistance<D>* rigid_ = nullptr;  // null without bodies
+  const SpinResistance<D>* spins_ = nullptr;   // null where nobody spins
+  std::int64_t in_front_ = 0;                  // nodes of spins
   Share share_;                                // nodes of R
   SlicedRows<D> rows_;
+  SpinRows<D> spin_rows_;
+  SpinBlocks<D> spin_blocks_;
   PackedBodies<D> bodies_;
   Multilevel<D> grid_;
   bool with_grid_ = false;

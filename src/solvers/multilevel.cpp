@@ -44,13 +44,13 @@ LocalPart chebyshev(std::size_t degree, double low, double high, double weight) 
 
 template <int D>
 void Multilevel<D>::set_up(const Resistance<D>& resistance, const SlicedRows<D>& rows,
-                           const RigidResistance<D>* rigid) {
+                           const RigidResistance<D>* rigid, const SpinResistance<D>* spins) {
   ranks_ = resistance.share().ranks;
   const bool outdated =
       grid_.empty() || grid_.null_translations() != resistance.translations_are_null() ||
       shift_ != resistance.shift() || stiffness_time_ != resistance.stiffness_time();
-  if (outdated || (remembers_ && last_rate_ < aged * fresh_rate_)) build(resistance, rigid);
-  place_nodes(resistance, rows);
+  if (outdated || (remembers_ && last_rate_ < aged * fresh_rate_)) build(resistance, rigid, spins);
+  place_nodes(resistance, rows, spins);
 }
 
 template <int D>
@@ -68,7 +68,8 @@ void Multilevel<D>::note_rate(double decades_per_iteration) {
 }
 
 template <int D>
-void Multilevel<D>::build(const Resistance<D>& resistance, const RigidResistance<D>* rigid) {
+void Multilevel<D>::build(const Resistance<D>& resistance, const RigidResistance<D>* rigid,
+                          const SpinResistance<D>* spins) {
   const Share share = resistance.share();
   const FrictionSpread friction = friction_spread(resistance, rigid);
   ties_ = friction.ties;
@@ -81,7 +82,7 @@ void Multilevel<D>::build(const Resistance<D>& resistance, const RigidResistance
     spacing *= 1.25;
     shape = choose_grid(resistance.box(), resistance.positions(), spacing, share);
   }
-  grid_.set_up(galerkin(resistance, shape, rigid, friction.moment),
+  grid_.set_up(galerkin(resistance, shape, rigid, friction.moment, spins),
                resistance.translations_are_null());
   shift_ = resistance.shift();
   stiffness_time_ = resistance.stiffness_time();
@@ -96,10 +97,27 @@ std::int64_t chunk_begin(std::int64_t places, std::int64_t chunk) {
 }
 
 template <int D>
-void Multilevel<D>::place_nodes(const Resistance<D>& resistance, const SlicedRows<D>& rows) {
+void Multilevel<D>::place_nodes(const Resistance<D>& resistance, const SlicedRows<D>& rows,
+                                const SpinResistance<D>* spins) {
   const GridShape<D>& shape = grid_.finest().shape();
   const std::int64_t grid_floats = shape.total() * SlicedRows<D>::stride;
-  places_ = rows.places();
+  places_ = velocities_ = rows.places();
+  std::vector<std::int32_t> row_of_spin;
+  if (spins != nullptr) {
+    row_of_spin.assign(index(SpinRows<D>::places_of(spins->spins())), -1);
+    parallel_for(resistance.nodes(), [&](std::int64_t row) {
+      const std::int32_t spin = spins->spin_of(index(row));
+      if (spin >= 0) row_of_spin[index(spin)] = static_cast<std::int32_t>(row);
+    });
+    places_ += std::ssize(row_of_spin);
+    half_length_.resize(std::ssize(row_of_spin));
+    for (std::size_t spin = 0; spin < row_of_spin.size(); ++spin)
+      half_length_.data()[spin] =
+          row_of_spin[spin] < 0 ? 0.0F : static_cast<float>(0.5 * spins->length(spin));
+    const std::array<Vec<D>, D> slopes = grid_slopes(resistance.box(), shape);
+    for (std::size_t c = 0; c < D; ++c)
+      for (std::size_t a = 0; a < D; ++a) slopes_[4 * c + a] = static_cast<float>(slopes[c].x[a]);
+  }
   place_.resize(places_ * floats_per_place);
   restricted_.resize(chunks() * grid_floats);
   correction_.resize(grid_floats);
@@ -112,7 +130,8 @@ void Multilevel<D>::place_nodes(const Resistance<D>& resistance, const SlicedRow
     std::int64_t begin = grid_floats, end = 0;
     for (std::int64_t place = chunk_begin(places_, chunk); place < chunk_begin(places_, chunk + 1);
          ++place) {
-      const std::int32_t node = rows.node_of_place()[index(place)];
+      const std::int32_t node = place < velocities_ ? rows.node_of_place()[index(place)]
+                                                    : row_of_spin[index(place - velocities_)];
       float* const out = place_.data() + floats_per_place * place;
       GridPosition<D> at{};
       if (node >= 0) at = locate(shape, grid_position(resistance, index(node)).x.data());
@@ -151,9 +170,13 @@ void Multilevel<D>::clear_chunk(std::int64_t chunk) {
 template <int D>
 void Multilevel<D>::restrict_chunk(std::int64_t chunk, const float* r, std::int64_t first,
                                    std::int64_t last) {
-  multilevel_kernels().restrict_to[D - 2](view(place_, grid_.finest().shape()), r,
-                                          restricted_.data() + chunk * correction_.size(), first,
-                                          last);
+  const TransferView transfer = view(place_, grid_.finest().shape());
+  float* const grid = restricted_.data() + chunk * correction_.size();
+  const std::int64_t middle = std::clamp(velocities_, first, last);
+  multilevel_kernels().restrict_to[D - 2](transfer, r, grid, first, middle);
+  if (middle < last)
+    multilevel_kernels().restrict_curl[D - 2](
+        transfer, {half_length_.data() - velocities_, slopes_.data()}, r, grid, middle, last);
 }
 
 template <int D>
@@ -201,14 +224,20 @@ double Multilevel<D>::cycle() {
 template <int D>
 void Multilevel<D>::interpolate(const float* z, float* p, float beta, std::int64_t first,
                                 std::int64_t last) const {
-  multilevel_kernels().interpolate[D - 2](view(place_, grid_.finest().shape()), correction_.data(),
-                                          z, p, beta, first, last);
+  const TransferView transfer = view(place_, grid_.finest().shape());
+  const std::int64_t middle = std::clamp(velocities_, first, last);
+  multilevel_kernels().interpolate[D - 2](transfer, correction_.data(), z, p, beta, first, middle);
+  if (middle < last)
+    multilevel_kernels().interpolate_curl[D - 2](
+        transfer, {half_length_.data() - velocities_, slopes_.data()}, correction_.data(), z, p,
+        beta, middle, last);
 }
 
 template <int D>
 std::int64_t Multilevel<D>::bytes() const {
-  return grid_.bytes() + (place_.size() + restricted_.size() + correction_.size()) *
-                             static_cast<std::int64_t>(sizeof(float));
+  return grid_.bytes() +
+         (half_length_.size() + place_.size() + restricted_.size() + correction_.size()) *
+             static_cast<std::int64_t>(sizeof(float));
 }
 
 template <int D>

@@ -21,6 +21,13 @@ struct TransferView {
   std::int64_t corner[8];  ///< offsets of the cell's corners from the lowest one, x fastest
 };
 
+/// Spins at places of the grid: y = length curl v, 1/2 R for w = 1/2 curl v and y = R w, 0 at a place without one. `slope`: row c,
+/// four floats, has the derivative along axis c of space from those along the cell's edges, d_c = sum_a slope[4 c + a] d_a.
+struct CurlView {
+  const float* length;
+  const float* slope;
+};
+
 /// Matrices of the cells of a grid, and the nodes that are seen from it. An element holds the D x D blocks, as triangles, of
 /// the corners n, m of its cell. It is symmetric in n and m: only m = n + s modulo 2^D with s <= 4 is kept, at `element_place`.
 struct ElementView {
@@ -75,6 +82,12 @@ struct MultilevelKernels {
   /// p = z + P grid + beta p.
   void (*interpolate[2])(const TransferView&, const float* grid, const float* z, float* p,
                          float beta, std::int64_t first, std::int64_t last);
+  /// The same two for spins.
+  void (*restrict_curl[2])(const TransferView&, const CurlView&, const float* r, float* grid,
+                           std::int64_t first, std::int64_t last);
+  void (*interpolate_curl[2])(const TransferView&, const CurlView&, const float* grid,
+                              const float* z, float* p, float beta, std::int64_t first,
+                              std::int64_t last);
   /// x += alpha p, r -= alpha q, z = D^-1 r; D^-1 as upper triangles, 16 floats each.
   CgSums (*update[2])(const float* inverse, float alpha, const float* p, const float* q, float* x,
                       float* r, float* z, std::int64_t first, std::int64_t last);

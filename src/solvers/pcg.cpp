@@ -1,4 +1,4 @@
-// Preconditioned conjugate gradients. On a Resistance or RigidResistance, velocities of particles, the work is done in single
+// Preconditioned conjugate gradients. On velocities of particles, bodies and spins of particles, the work is done in single
 // precision (mixed_cg.cpp); on any other System, whatever its block, and where single precision does not do, in double, on
 // System::apply. On a projected system everything lives in the range of Pi: the operator is Pi A Pi, the preconditioner
 // Pi M^-1 Pi.
@@ -18,8 +18,8 @@ namespace odpd {
 namespace {
 
 constexpr const char* no_grid =
-    "preconditioner multilevel is for velocities of particles and rigid bodies, not for these "
-    "unknowns: block-Jacobi in double precision instead";
+    "preconditioner multilevel is for velocities of particles and rigid bodies and for spins of "
+    "particles, not for these unknowns: block-Jacobi in double precision instead";
 
 class DoubleCg : public CgEngine {
  public:

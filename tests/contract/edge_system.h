@@ -155,23 +155,12 @@ std::vector<CoupledEdge> conducting(const odpd::PairNetwork<D>& network) {
 }
 
 /// x of  A x + E l = b, E^T x = 0  (without E where there are no translations to remove), by Gauss with pivots.
-inline std::vector<double> dense_solution(const std::vector<CoupledEdge>& edges,
-                                          const odpd::NodeMap& map, const Matrix& E,
+inline std::vector<double> dense_solution(const Matrix& a, const Matrix& E,
                                           const std::vector<double>& b) {
-  const auto block = static_cast<std::size_t>(map.block_size());
   const std::size_t n = b.size(), size = n + E.columns;
   Matrix m{size, size + 1};
-  for (const CoupledEdge& e : edges)
-    for (std::size_t a = 0; a < 2; ++a)
-      for (std::size_t c = 0; c < 2; ++c) {
-        const std::int32_t row = map.node_of(e.particle[a]), column = map.node_of(e.particle[c]);
-        if (row < 0 || column < 0) continue;
-        const Matrix part = product(e.J[a], e.Z, e.J[c]);
-        for (std::size_t k = 0; k < block * block; ++k)
-          m(static_cast<std::size_t>(row) * block + k / block,
-            static_cast<std::size_t>(column) * block + k % block) += part.value[k];
-      }
   for (std::size_t r = 0; r < n; ++r) {
+    for (std::size_t c = 0; c < n; ++c) m(r, c) = a(r, c);
     m(r, size) = b[r];
     for (std::size_t c = 0; c < E.columns; ++c) m(r, n + c) = m(n + c, r) = E(r, c);
   }
@@ -193,6 +182,24 @@ inline std::vector<double> dense_solution(const std::vector<CoupledEdge>& edges,
   std::vector<double> x(n);
   for (std::size_t r = 0; r < n; ++r) x[r] = m(r, size);
   return x;
+}
+
+inline std::vector<double> dense_solution(const std::vector<CoupledEdge>& edges,
+                                          const odpd::NodeMap& map, const Matrix& E,
+                                          const std::vector<double>& b) {
+  const auto block = static_cast<std::size_t>(map.block_size());
+  Matrix m{b.size(), b.size()};
+  for (const CoupledEdge& e : edges)
+    for (std::size_t a = 0; a < 2; ++a)
+      for (std::size_t c = 0; c < 2; ++c) {
+        const std::int32_t row = map.node_of(e.particle[a]), column = map.node_of(e.particle[c]);
+        if (row < 0 || column < 0) continue;
+        const Matrix part = product(e.J[a], e.Z, e.J[c]);
+        for (std::size_t k = 0; k < block * block; ++k)
+          m(static_cast<std::size_t>(row) * block + k / block,
+            static_cast<std::size_t>(column) * block + k % block) += part.value[k];
+      }
+  return dense_solution(m, E, b);
 }
 
 }  // namespace contract

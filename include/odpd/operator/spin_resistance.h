@@ -59,6 +59,8 @@ class SpinResistance : public System {
   std::int64_t spins() const { return std::ssize(length_); }
   /// R of a spin's y = R w.
   double length(std::size_t spin) const { return length_[spin]; }
+  /// What inertia adds to the diagonal of a spin, in y.
+  double spin_shift(std::size_t spin) const { return spin_shift_[spin]; }
   /// Node of the spin of a mobile particle, -1 when it has none of its own.
   std::int32_t spin_of(std::size_t row) const { return spin_of_[row]; }
   /// Of a mobile particle; none where no edge of it sees a spin. In the order of its edges.

@@ -13,8 +13,16 @@
 //   c tau (2 E : E + (tr E)^2),   E the strain rate there,   tau = sum zeta r^2 / (2 D (D + 2)) of a free particle
 //
 // with c twice the body's radius in units of the grid's spacing.
+//
+// Spins follow the grid, w = 1/2 curl v. The slip of an edge with levers is then E d: what its friction along e sees stays, and
+// friction across e, taken as isotropic, becomes
+//
+//   zeta_perp |E d - e (e . E d)|^2  ->  zeta_perp r^2 / (D (D + 2)) (D E : E - (tr E)^2)
+//
+// Its E : E = 1/2 (|grad v|^2 + d_a v_b d_b v_a) makes blocks that are not symmetric, d_a v_b d_b v_a, of which the mean of it
+// and (div v)^2 is taken: where friction is the same everywhere their integrals are.
 #include "odpd/core/index.h"
-#include "odpd/operator/rigid_resistance.h"
+#include "odpd/operator/spin_resistance.h"
 #include "odpd/solvers/multigrid.h"
 
 namespace odpd {
@@ -34,6 +42,10 @@ Vec<D> grid_position(const Resistance<D>& resistance, std::size_t node);
 template <int D>
 GridPosition<D> locate(const GridShape<D>& shape, const double* position);
 
+/// Row c: the derivative along axis c of space from those along the axes of the grid, per cell.
+template <int D>
+std::array<Vec<D>, D> grid_slopes(const Box<D>& box, const GridShape<D>& shape);
+
 /// How friction is spread, by the edges of a sample of the free particles, or of all where few are free, with zeta the trace
 /// of an edge's friction.
 struct FrictionSpread {
@@ -48,9 +60,10 @@ template <int D>
 FrictionSpread friction_spread(const Resistance<D>& resistance,
                                const RigidResistance<D>* rigid = nullptr);
 
-/// `moment`: that of FrictionSpread, asked for with bodies only.
+/// `moment`: that of FrictionSpread, asked for with bodies only. `spins`: the operator around both, null where nobody spins.
 template <int D>
 GridOperator<D> galerkin(const Resistance<D>& resistance, const GridShape<D>& shape,
-                         const RigidResistance<D>* rigid = nullptr, double moment = 0.0);
+                         const RigidResistance<D>* rigid = nullptr, double moment = 0.0,
+                         const SpinResistance<D>* spins = nullptr);
 
 }  // namespace odpd

@@ -12,6 +12,8 @@
 //
 // so the local part, two or four steps of block-Jacobi, is definite. (T_4: Chebyshev's polynomial, small for 0.1 < L < 2.) With
 // rigid bodies the caller projects what P gives on the velocities in which these are rigid.
+// Of a particle that spins D has all unknowns, too (solvers/spin_blocks.h), and P gives its spin w = 1/2 curl v of the grid, P^T
+// its torque's share. Places of spins follow those of velocities (operator/spin_rows.h).
 // It serves clusters of strongly bound particles that move together against weak ties: D alone takes them to be as stiff as
 // the ties inside. The grid stands still while the particles move, so its operator ages slowly: it is kept until convergence
 // has slowed down (`note_rate`).
@@ -20,7 +22,7 @@
 #include <vector>
 
 #include "odpd/core/archive.h"
-#include "odpd/operator/rigid_resistance.h"
+#include "odpd/operator/spin_rows.h"
 #include "odpd/solvers/multigrid.h"
 
 namespace odpd {
@@ -36,9 +38,10 @@ class Multilevel {
  public:
   /// Positions in the grid, and the grid's operator where it is missing, belongs to another shift or stiffness, or has
   /// aged. Rebuilding costs about as much as one solve to 1e-7.
-  /// `rigid`: the operator around `resistance` where there are rigid bodies, else null.
+  /// `rigid`: the operator around `resistance` where there are rigid bodies, else null. `spins`: that around both, null where
+  /// nobody spins.
   void set_up(const Resistance<D>& resistance, const SlicedRows<D>& rows,
-              const RigidResistance<D>* rigid = nullptr);
+              const RigidResistance<D>* rigid = nullptr, const SpinResistance<D>* spins = nullptr);
   /// Decades of residual per iteration of the last solve. Below `aged` times those of the first solve with the present
   /// grid operator, the next set-up builds it anew.
   void note_rate(double decades_per_iteration);
@@ -67,8 +70,10 @@ class Multilevel {
   void load(const StateReader& in);
 
  private:
-  void build(const Resistance<D>& resistance, const RigidResistance<D>* rigid);
-  void place_nodes(const Resistance<D>& resistance, const SlicedRows<D>& rows);
+  void build(const Resistance<D>& resistance, const RigidResistance<D>* rigid,
+             const SpinResistance<D>* spins);
+  void place_nodes(const Resistance<D>& resistance, const SlicedRows<D>& rows,
+                   const SpinResistance<D>* spins);
 
   const Communicator* ranks_ = &Communicator::alone();  // each of which has the whole grid
   Multigrid<D> grid_;
@@ -77,11 +82,13 @@ class Multilevel {
   bool remembers_ = true;
   double ties_ = 0.0;  // of FrictionSpread, when the operator was built
   std::int64_t builds_ = 0;
-  std::int64_t places_ = 0;
-  FloatArray place_;                         // position in cell and cell, four floats per place
-  FloatArray restricted_;                    // per chunk a grid vector, point by point
-  FloatArray correction_;                    // e, point by point
-  std::vector<std::int64_t> touched_begin_;  // per chunk the grid floats that its places touch
+  std::int64_t places_ = 0, velocities_ = 0;  // all, and those of velocities
+  FloatArray half_length_;                    // R/2 of the spins' places, 0 at empty ones
+  std::array<float, 4 * D> slopes_{};         // grid_slopes
+  FloatArray place_;                          // position in cell and cell, four floats per place
+  FloatArray restricted_;                     // per chunk a grid vector, point by point
+  FloatArray correction_;                     // e, point by point
+  std::vector<std::int64_t> touched_begin_;   // per chunk the grid floats that its places touch
   std::vector<std::int64_t> touched_end_;
 };
 
