@@ -90,7 +90,7 @@ class CalibratedSdpd : public CalibratedModel {
         p_.support * std::pow(n, 1.0 / dimension_), p_.state.modulus, p_.state.background);
     if (p_.state.exponent > 0.0)
       lines += fmt::format("equation_of_state = \"tait\"\ntait_exponent = {}\n", p_.state.exponent);
-    return lines;
+    return friction_.spin ? lines + "spin = true\n" : lines;
   }
   double guess(double eta) const override { return eta; }
   // Sheared at the default rate, 9 over this, the Peclet number eta rate/(n kT) is 1.
@@ -111,7 +111,9 @@ class CalibratedSdpd : public CalibratedModel {
   template <int D>
   double state_step(double friction, double mass) const {
     const double ratio = friction / friction_.eta(D);
-    const SdpdFriction scaled{.A = ratio * friction_.A, .B = ratio * friction_.B};
+    SdpdFriction scaled = friction_;
+    scaled.A *= ratio;
+    scaled.B *= ratio;
     return SdpdModel<D>(p_, 1, {scaled}).reference_state(mass)->accurate_step;
   }
 

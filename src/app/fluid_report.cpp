@@ -56,7 +56,7 @@ template <int D>
 KineticTheory kinetic_theory_at(const Scene<D>& scene, double density) {
   const double mass = scene.settings().mass;
   return kinetic_theory<D>(scene.pair_moments(), fractions(scene), density, mass,
-                           scene.model().reference_state(mass));
+                           scene.model().reference_state(mass), scene.particles().spin_of_species);
 }
 
 template <int D>
@@ -110,22 +110,27 @@ std::string expectation_text(const PairModel<D>& model) {
 template <int D>
 Named kinetic_values(const Scene<D>& scene, const KineticTheory& k) {
   const auto limit = scene.explicit_step_limit();
-  return {{"eta", k.eta()},
-          {"eta_friction", k.eta_friction},
-          {"eta_kinetic", k.eta_kinetic},
-          {"kappa_inverse", k.kappa_inverse},
-          {"alpha", k.alpha},
-          {"Sc", k.Sc},
-          {"rho", k.rho},
-          {"diffusion", k.diffusion},
-          {"tau_P", k.tau_P},
-          {"w_0", k.w_0},
-          {"l_0", k.l_0},
-          {"pressure", k.pressure},
-          {"bulk_modulus", k.bulk_modulus},
-          {"speed_of_sound", k.speed_of_sound},
-          {"energy_per_particle", k.energy},
-          {"step_limit", limit.value_or(std::nan(""))}};
+  Named values{{"eta", k.eta()},
+               {"eta_friction", k.eta_friction},
+               {"eta_kinetic", k.eta_kinetic},
+               {"kappa_inverse", k.kappa_inverse},
+               {"alpha", k.alpha},
+               {"Sc", k.Sc},
+               {"rho", k.rho},
+               {"diffusion", k.diffusion},
+               {"tau_P", k.tau_P},
+               {"w_0", k.w_0},
+               {"l_0", k.l_0},
+               {"pressure", k.pressure},
+               {"bulk_modulus", k.bulk_modulus},
+               {"speed_of_sound", k.speed_of_sound},
+               {"energy_per_particle", k.energy},
+               {"step_limit", limit.value_or(std::nan(""))}};
+  if (k.eta_rotational > 0.0) {
+    values.emplace_back("eta_rotational", k.eta_rotational);
+    values.emplace_back("spin_relaxation", k.spin_relaxation);
+  }
+  return values;
 }
 
 std::string line(const char* head, const Named& values) {

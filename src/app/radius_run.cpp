@@ -60,7 +60,9 @@ std::string fluid_lines(const Config& portable, const SceneSettings<D>& s, const
   // What physical inputs and calibrations came to, as these go by a density.
   if (const DpdFluid* dpd = dpd_fluid(*s.model))
     return calibrated_dpd(dpd->p, D, m.density)->keys() +
-           fmt::format("gamma = {}\ngamma_perp = {}\n", dpd->p.gamma, dpd->p.gamma_perp);
+           fmt::format("gamma = {}\ngamma_perp = {}\n", dpd->p.gamma, dpd->p.gamma_perp) +
+           (portable.table("fluid").has("antisymmetric_stress") ? "antisymmetric_stress = true\n"
+                                                                : "");
   const std::string lines =
       lines_of(portable.values("fluid"), {"density", "count", "reference_density", "mass", "rho",
                                           "zeta_0", "zeta_0_under_flow", "calibration"});

@@ -19,7 +19,7 @@ namespace {
 // Of the forces' norm: what pair forces have along a null motion is rounding.
 constexpr double no_work = 1e-9;
 constexpr std::size_t most_named = 3;
-constexpr const char* of_sdpd = " (of \"sdpd\" fluid.form = \"classical\")";
+constexpr const char* of_sdpd = " (of \"sdpd\" fluid.form = \"classical\" without fluid.spin)";
 
 template <int D>
 double norm_of_forces(std::span<const double> load, const Share& share,

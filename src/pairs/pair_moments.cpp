@@ -58,14 +58,14 @@ class PairFunction {
   std::vector<double> ends_;
 };
 
-using Integrand = std::array<double, 4>;  // energy, virial, drag, shear; times r^(d - 1)
+using Integrand = std::array<double, 5>;  // energy, virial, drag, both shears; times r^(d - 1)
 
 template <int D>
 Integrand integrand(const PairFunction<D>& pair, double r) {
   const PairTerms t = pair(r);
   const double shell = std::pow(r, D - 1);
   return {t.u * shell, r * t.f_c * shell, (t.zeta_par + (D - 1) * t.zeta_perp) * shell,
-          r * r * (t.zeta_par + (D + 1) * t.zeta_perp) * shell};
+          r * r * t.zeta_par * shell, r * r * t.zeta_perp * shell};
 }
 
 // As r^-1 or worse, seen over ten doublings of r next to 0.
@@ -82,7 +82,7 @@ Integrand integrals(const PairFunction<D>& pair, double from) {
   Integrand sum{};
   for (const double end : pair.ends()) {
     if (end <= from) continue;
-    const Integrand part = integrate<4>([&](double r) { return integrand(pair, r); }, from, end);
+    const Integrand part = integrate<5>([&](double r) { return integrand(pair, r); }, from, end);
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += surface * part[k];
     from = end;
   }
@@ -103,7 +103,8 @@ void set_integrals(const PairFunction<D>& pair, PairMoments& m) {
   m.energy = defined(0);
   if (m.energy) m.virial = defined(1);
   m.drag = defined(2);
-  m.shear = defined(3);
+  m.shear_par = defined(3);
+  m.shear_perp = defined(4);
 }
 
 bool is_finite(const PairTerms& t) {

@@ -58,7 +58,8 @@ std::shared_ptr<const PairModel<D>> default_pair_model() {
 
 std::vector<std::string> dynamical_model_keys() {
   std::vector<std::string> keys = friction_keys();
-  keys.insert(keys.end(), {"eta", "Sc", "tau_P"});
+  keys.insert(keys.end(),
+              {"eta", "Sc", "tau_P", "spin", "lever_radius", "moment", "antisymmetric_stress"});
   return keys;
 }
 

@@ -39,8 +39,12 @@ Derivatives EquationOfState::energy(double d) const {
   return psi;
 }
 
-SdpdFriction SdpdFriction::of(double eta, double zeta_b, int dimension) {
+SdpdFriction SdpdFriction::of(double eta, double zeta_b, int dimension, bool spin) {
   const double d = dimension;
+  if (spin) {
+    const double across = 4.0 * (eta * (1.0 + 2.0 / d) - zeta_b);
+    return {.A = across, .B = 2.0 * d * zeta_b - across, .spin = true};
+  }
   return {.A = eta * (1.0 + 2.0 / d) - zeta_b, .B = (d + 2.0) * (zeta_b + eta * (1.0 - 2.0 / d))};
 }
 
@@ -48,14 +52,18 @@ SdpdFriction SdpdFriction::central(double eta, int dimension) {
   return {.A = 0.0, .B = 2.0 * (dimension + 2.0) * eta};
 }
 
-SdpdFriction SdpdFriction::classical(double eta, int dimension) {
-  const double d = dimension, both = 2.0 * (d + 2.0) / (d + 3.0) * eta;
-  return {.A = both, .B = both};
+SdpdFriction SdpdFriction::classical(double eta, int dimension, bool spin) {
+  const double d = dimension,
+               both = spin ? 4.0 * (d + 2.0) / (d + 4.0) * eta : 2.0 * (d + 2.0) / (d + 3.0) * eta;
+  return {.A = both, .B = both, .spin = spin};
 }
 
-double SdpdFriction::eta(int dimension) const { return 0.5 * A + 0.5 * B / (dimension + 2.0); }
+double SdpdFriction::eta(int dimension) const {
+  return (spin ? 0.25 : 0.5) * A + 0.5 * B / (dimension + 2.0);
+}
 
 double SdpdFriction::zeta_b(int dimension) const {
+  if (spin) return (A + B) / (2.0 * dimension);
   return B / (dimension + 2.0) - eta(dimension) * (1.0 - 2.0 / dimension);
 }
 
@@ -149,6 +157,11 @@ std::optional<ReferenceState> SdpdModel<D>::reference_state(double mass) const {
 }
 
 template <int D>
+double SdpdModel<D>::lever_radius() const {
+  return friction_[0].spin ? 0.5 * std::pow(p_.state.d_0, -1.0 / D) : 0.0;
+}
+
+template <int D>
 ModelParameters SdpdModel<D>::parameters() const {
   const SdpdFriction& f = friction_[0];
   const EquationOfState& state = p_.state;
@@ -232,12 +245,13 @@ EquationOfState read_state(const FluidKeys& keys, double d_0, double kT) {
 
 // eta, and zeta_b or what the form makes of it.
 SdpdFriction read_sdpd_friction(const Config& keys, const Config& fluid, int dimension) {
+  const bool spin = fluid.has("spin") && fluid.boolean("spin");
   const double eta = keys.has("eta") ? keys.positive("eta") : fluid.positive("eta");
   const std::string form = fluid.choice("form", {"central", "classical"}, "central");
   const Config& of = keys.has("zeta_b") ? keys : fluid;
   if (!of.has("zeta_b"))
     return form == "central" ? SdpdFriction::central(eta, dimension)
-                             : SdpdFriction::classical(eta, dimension);
+                             : SdpdFriction::classical(eta, dimension, spin);
   if (fluid.has("form"))
     of.fail("zeta_b", "follows from form: give zeta_b or fluid.form, never both");
   const double zeta_b = of.non_negative("zeta_b"), most = eta * (1.0 + 2.0 / dimension);
@@ -246,17 +260,18 @@ SdpdFriction read_sdpd_friction(const Config& keys, const Config& fluid, int dim
     of.fail(
         "zeta_b",
         fmt::format("is more than friction between pairs can give, (1 + 2/d) eta = {:.6g}", most));
-  return SdpdFriction::of(eta, zeta_b, dimension);
+  return SdpdFriction::of(eta, zeta_b, dimension, spin);
 }
 
 void warn_of(const SdpdParameters& p, const SdpdFriction& f, double spacing) {
-  if (f.A > 0.0)
+  if (f.A > 0.0 && !f.spin)
     log_warning(
         "fluid.model = \"sdpd\" with friction across lines of centres (form = \"classical\" or "
         "zeta_b) "
         "does not keep angular momentum, and its stress is not symmetric: of the shear stresses "
         "only "
-        "that of the flow's direction across the gradient is the viscosity's");
+        "that of the flow's direction across the gradient is the viscosity's; fluid.spin = true "
+        "cures both");
   if (p.support < 2.5 * spacing)
     log_warning(fmt::format(
         "fluid.support = {:.3g} spacings is below 2.5: the viscosity may be far from fluid.eta "
@@ -298,6 +313,10 @@ std::shared_ptr<const PairModel<D>> read_sdpd(const FluidKeys& keys) {
   p.support = support * spacing;
   p.state = read_state(keys, d_0, p.kT);
   const SdpdFriction friction = read_sdpd_friction(fluid, fluid, D);
+  if (fluid.has("spin") && fluid.boolean("spin") && friction.A == 0.0)
+    fluid.fail("spin",
+               "particles of the central form have no friction across lines of centres that would "
+               "turn them: give fluid.form = \"classical\", or a zeta_b below (1 + 2/d) eta");
   const auto table = pair_table(keys, friction, [&](const Config& pair, const SdpdFriction&) {
     refuse_dpd_keys(pair);
     return read_sdpd_friction(pair, fluid, D);

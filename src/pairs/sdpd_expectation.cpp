@@ -75,7 +75,8 @@ std::optional<ExpectedViscosity> expected_viscosity(const SdpdParameters& p,
                                                     const SdpdFriction& friction, int dimension) {
   const bool central = friction.A == 0.0,
              classical = std::abs(friction.A - friction.B) <= 1e-12 * friction.A;
-  if (p.kT == 0.0 || p.state.background < 0.0 || !(central || classical)) return std::nullopt;
+  if (p.kT == 0.0 || p.state.background < 0.0 || friction.spin || !(central || classical))
+    return std::nullopt;
   const double n = p.state.d_0, support = p.support * std::pow(n, 1.0 / dimension),
                kappa = p.state.modulus / (n * p.kT), Gamma = p.state.background / (n * p.kT);
   std::optional<ExpectedViscosity> nearest;

@@ -94,7 +94,8 @@ TYPED_TEST(PairMomentsIn, OfDpdAreItsClosedForms) {
       expect(m.energy, p.a * p.cutoff / (s_bar + 1.0) * weight_moment<D>(0, s_bar + 1.0, p.cutoff));
       expect(m.virial, p.a * weight_moment<D>(1, s_bar, p.cutoff));
       expect(m.drag, zeta(0, D - 1));
-      expect(m.shear, zeta(2, D + 1));
+      expect(m.shear_par, zeta(2, 0));
+      expect(m.shear_perp, p.gamma_perp * weight_moment<D>(2, s, p.cutoff));
       EXPECT_EQ(m.energy_beyond_core, m.energy);
       EXPECT_EQ(m.kT, 0.4);
       EXPECT_EQ(m.force, 25.0);
@@ -154,7 +155,7 @@ TYPED_TEST(PairMomentsIn, WhatDivergesIsUndefined) {
   const PairMoments m = pair_moments(*support::lennard_jones<D>(1.0, 1.0), Site{}, Site{});
   EXPECT_FALSE(m.energy.has_value());
   EXPECT_FALSE(m.virial.has_value());
-  EXPECT_TRUE(m.drag.has_value() && m.shear.has_value());
+  EXPECT_TRUE(m.drag.has_value() && m.shear_par.has_value() && m.shear_perp.has_value());
   const auto k = odpd::kinetic_theory<D>({m}, {1.0}, 4.0, 0.0);
   EXPECT_TRUE(std::isnan(k.pressure) && std::isnan(k.energy) && std::isnan(k.kappa_inverse));
   EXPECT_GT(k.eta_friction, 0.0);

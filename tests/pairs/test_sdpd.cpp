@@ -102,8 +102,13 @@ TYPED_TEST(SdpdTest, ViscositiesAndFrictionFollowFromEachOther) {
   EXPECT_NEAR(classical.eta(D), 3.0, 1e-14);
   EXPECT_NEAR(classical.A, (D == 2 ? 8.0 / 5.0 : 5.0 / 3.0) * 3.0, 1e-14);
   EXPECT_NEAR(classical.zeta_b(D), D == 2 ? 2.0 / 5.0 * 3.0 : 0.0, 1e-14);
-  for (const SdpdFriction& f : {central, classical, SdpdFriction{0.7, 2.3}}) {
-    const SdpdFriction back = SdpdFriction::of(f.eta(D), f.zeta_b(D), D);
+  const SdpdFriction spinning = SdpdFriction::classical(3.0, D, true);
+  EXPECT_NEAR(spinning.eta(D), 3.0, 1e-14);
+  EXPECT_NEAR(spinning.A, (D == 2 ? 8.0 / 3.0 : 20.0 / 7.0) * 3.0, 1e-14);
+  EXPECT_NEAR(spinning.B, spinning.A, 1e-14);
+  for (const SdpdFriction& f :
+       {central, classical, SdpdFriction{0.7, 2.3}, spinning, SdpdFriction{0.7, 2.3, true}}) {
+    const SdpdFriction back = SdpdFriction::of(f.eta(D), f.zeta_b(D), D, f.spin);
     EXPECT_NEAR(back.A, f.A, 1e-13);
     EXPECT_NEAR(back.B, f.B, 1e-13);
   }
@@ -114,7 +119,7 @@ struct LatticeViscosities {
   double eta, zeta_b;
 };
 template <int D>
-LatticeViscosities of_lattice(const SdpdModel<D>& model) {
+LatticeViscosities of_lattice(const SdpdModel<D>& model, bool spin) {
   // Stress per volume of the gradient's component xy in xy, and of xx in xx and yy: longitudinal = zeta_b + 2 eta (1 - 1/d).
   double shear = 0.0, longitudinal = 0.0;
   const int n = static_cast<int>(model.cutoff()) + 1;
@@ -132,7 +137,8 @@ LatticeViscosities of_lattice(const SdpdModel<D>& model) {
           return t.zeta_par * along * along + t.zeta_perp * (dot(v, v) - along * along);
         };
         Vec<D> sheared{}, stretched{};
-        sheared[0] = r[1];
+        sheared[0] = spin ? 0.5 * r[1] : r[1];  // with w = 1/2 curl v
+        if (spin) sheared[1] = 0.5 * r[0];
         stretched[0] = r[0];
         shear += 0.5 * dissipated(sheared);
         longitudinal += 0.5 * dissipated(stretched);
@@ -169,9 +175,11 @@ TYPED_TEST(SdpdTest, ManyDistancesAtOnceGiveWhatEachGives) {
 TYPED_TEST(SdpdTest, LatticeOfManyNeighboursHasTheViscositiesAskedFor) {
   constexpr int D = TypeParam::D;
   const SdpdParameters p{.state = {.d_0 = 1.0}, .support = D == 2 ? 20.5 : 11.0};
-  for (const SdpdFriction& f : {SdpdFriction::central(1.0, D), SdpdFriction::classical(1.0, D),
-                                SdpdFriction::of(1.0, 0.5, D), SdpdFriction{2.0, 0.0}}) {
-    const LatticeViscosities v = of_lattice(SdpdModel<D>(p, 1, {f}));
+  for (const SdpdFriction& f :
+       {SdpdFriction::central(1.0, D), SdpdFriction::classical(1.0, D),
+        SdpdFriction::of(1.0, 0.5, D), SdpdFriction{2.0, 0.0},
+        SdpdFriction::classical(1.0, D, true), SdpdFriction::of(1.0, 0.5, D, true)}) {
+    const LatticeViscosities v = of_lattice(SdpdModel<D>(p, 1, {f}), f.spin);
     EXPECT_NEAR(v.eta, f.eta(D), 1e-3);
     EXPECT_NEAR(v.zeta_b, f.zeta_b(D), 1e-3);
   }
@@ -185,9 +193,17 @@ TYPED_TEST(SdpdTest, KineticTheoryReturnsWhatWasAskedFor) {
                          .support = 1.4,
                          .kT = 0.5};
   const SdpdModel<D> model(p, 1, {SdpdFriction::of(3.0, 1.0, D)});
+  EXPECT_EQ(model.lever_radius(), 0.0);
   const auto k = odpd::kinetic_theory<D>(odpd::pair_moments(model, 1), {1.0}, 4.0, 0.0,
                                          model.reference_state(0.0));
   EXPECT_NEAR(k.eta_friction, 3.0, 1e-9);
+  EXPECT_EQ(k.eta_rotational, 0.0);
+  const SdpdModel<D> spinning(p, 1, {SdpdFriction::of(3.0, 1.0, D, true)});
+  EXPECT_NEAR(spinning.lever_radius(), 0.5 * std::pow(4.0, -1.0 / D), 1e-14);
+  EXPECT_NEAR(odpd::kinetic_theory<D>(odpd::pair_moments(spinning, 1), {1.0}, 4.0, 0.0, {},
+                                      {{spinning.lever_radius(), 0.0}})
+                  .eta_friction,
+              3.0, 1e-9);
   EXPECT_NEAR(k.pressure, 9.0 + 4.0 * 0.5, 1e-9);
   EXPECT_NEAR(k.bulk_modulus, 70.0 + 4.0 * 0.5, 1e-9);
   // The force of the pair at the reference density has the same pressure.

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "cases.h"
+#include "odpd/pairs/sdpd.h"
 #include "odpd/scene/spin_keys.h"
 #include "support/errors.h"
 
@@ -36,10 +37,10 @@ TEST(SpinKeys, TheMomentIsThatOfASolidSphereOrDiskUnlessGiven) {
 }
 
 TEST(SpinKeys, ASpeciesTakesThoseOfTheFluidOrItsOwn) {
-  const std::string text = spinning + "lever_radius = 0.5\nmass = 1.0\n" +
-                           "[[species]]\nname = \"a\"\n" +
-                           "[[species]]\nname = \"b\"\ncount = 3\nlever_radius = 2.0\n" +
-                           "[[species]]\nname = \"c\"\ncount = 4\nlever_radius = 0\n";
+  const std::string text =
+      spinning + "lever_radius = 0.5\nmass = 1.0\nantisymmetric_stress = true\n" +
+      "[[species]]\nname = \"a\"\n" + "[[species]]\nname = \"b\"\ncount = 3\nlever_radius = 2.0\n" +
+      "[[species]]\nname = \"c\"\ncount = 4\nlever_radius = 0\n";
   const odpd::Scene<3> scene(settings<3>(text));
   const odpd::Particles<3>& particles = scene.particles();
   ASSERT_EQ(particles.spin_of_species.size(), 3u);
@@ -74,6 +75,85 @@ TEST(SpinKeys, RefusesNumbersThatMakeNoSense) {
   refuse({"fluid.lever_radius=1.0", "fluid.moment=1.0"}, {"fluid.moment", "fluid.mass"});
   expect_error<ConfigError>([&] { settings<3>(spinning + two_species + "moment = 0.1\n"); },
                             {"species.1.moment", "lever_radius > 0"});
+}
+
+TEST(SpinKeys, FrictionAcrossLinesOfCentresNeedsSpinOrInsistence) {
+  const std::string insist = "fluid.antisymmetric_stress=true";
+  const auto refuse = [](const std::string& text, const std::vector<std::string>& keys,
+                         std::initializer_list<const char*> parts) {
+    expect_error<ConfigError>([&] { settings<3>(text, keys); }, parts);
+  };
+  refuse(spinning, {}, {"fluid.gamma_perp", "lever_radius", "antisymmetric_stress = true"});
+  refuse(spinning, {"fluid.antisymmetric_stress=false"}, {"fluid.gamma_perp"});
+  EXPECT_NO_THROW(settings<3>(spinning, {insist}));
+  EXPECT_NO_THROW(settings<3>(spinning, {"fluid.lever_radius=0.5", insist}));
+  // One end that spins takes up the torque; between two that do not nothing does.
+  const std::string species =
+      "[[species]]\nname = \"a\"\n[[species]]\nname = \"b\"\ncount = 3\nlever_radius = 1.0\n";
+  const auto pair = [](const char* a, const char* b) {
+    return std::string("[[pair]]\nspecies = [\"") + a + "\", \"" + b + "\"]\ngamma_perp = 1.0\n";
+  };
+  EXPECT_NO_THROW(settings<3>(periodic + species + pair("a", "b")));
+  EXPECT_NO_THROW(settings<3>(periodic + species + pair("b", "b")));
+  refuse(periodic + species + pair("a", "b") + pair("a", "a"), {}, {"pair.1.gamma_perp"});
+  refuse(spinning + species, {}, {"fluid.gamma_perp"});
+  // Whatever the model that takes DPD's friction.
+  refuse(spinning + "model = \"gaussian\"\nw = 0.3\n", {}, {"fluid.gamma_perp"});
+  std::string many = spinning + "model = \"mdpd\"\nA = -10.0\nB = 12.0\nr_d = 0.9\nfilled = true\n";
+  many.erase(many.find("a = 18.75\n"), 10);
+  refuse(many, {}, {"fluid.gamma_perp"});
+  EXPECT_NO_THROW(settings<3>(many, {"fluid.lever_radius=0.5"}));
+}
+
+TEST(SpinKeys, WhatNothingTurnsIsRefused) {
+  const auto refuse = [](const std::string& text, const std::vector<std::string>& keys,
+                         std::initializer_list<const char*> parts) {
+    expect_error<ConfigError>([&] { settings<3>(text, keys); }, parts);
+  };
+  refuse(periodic, {"fluid.lever_radius=0.5"},
+         {"fluid.lever_radius", "'fluid'", "across lines of centres", "gamma_perp"});
+  refuse(periodic, {"fluid.lever_radius=0.5", "fluid.mass=1.0"}, {"fluid.lever_radius"});
+  const std::string b =
+      "[[species]]\nname = \"a\"\n[[species]]\nname = \"b\"\ncount = 3\nlever_radius = 1.0\n";
+  refuse(periodic + b, {}, {"species.1.lever_radius", "'b'"});
+}
+
+const std::string sdpd = R"(
+[box]
+size = [7.0, 7.0, 7.0]
+periodic = [true, true, true]
+[fluid]
+model = "sdpd"
+density = 1.0
+eta = 3.0
+bulk_modulus = 10.0
+kT = 0.1
+)";
+
+TEST(SpinKeys, SdpdSpinsAsOneFluid) {
+  const auto plain = settings<3>(sdpd, {"fluid.form=classical"});
+  EXPECT_EQ(plain.species[0].lever_radius, 0.0);
+  const auto scene =
+      settings<3>(sdpd, {"fluid.form=classical", "fluid.spin=true", "fluid.mass=2.0"});
+  EXPECT_DOUBLE_EQ(scene.species[0].lever_radius, 0.5);
+  EXPECT_DOUBLE_EQ(scene.species[0].moment, 0.4 * 2.0 * 0.25);
+  const odpd::SdpdFriction& f = dynamic_cast<const odpd::SdpdModel<3>&>(*scene.model).friction();
+  EXPECT_NEAR(f.A, 20.0 / 7.0 * 3.0, 1e-14);
+  EXPECT_EQ(f.A, f.B);
+  const auto own =
+      settings<3>(sdpd, {"fluid.zeta_b=1.0", "fluid.spin=true", "fluid.lever_radius=0.25"});
+  EXPECT_EQ(own.species[0].lever_radius, 0.25);
+  EXPECT_NEAR(dynamic_cast<const odpd::SdpdModel<3>&>(*own.model).friction().zeta_b(3), 1.0, 1e-14);
+  const auto refuse = [](const std::vector<std::string>& keys,
+                         std::initializer_list<const char*> parts) {
+    expect_error<ConfigError>([&] { settings<3>(sdpd, keys); }, parts);
+  };
+  refuse({"fluid.spin=true"}, {"fluid.spin", "form = \"classical\""});
+  refuse({"fluid.lever_radius=0.5"}, {"fluid.lever_radius", "fluid.spin = true"});
+  refuse({"fluid.form=classical", "fluid.lever_radius=0.5"},
+         {"fluid.lever_radius", "another viscosity"});
+  refuse({"fluid.form=classical", "fluid.spin=true", "fluid.lever_radius=0.0"},
+         {"fluid.lever_radius", "fluid.spin"});
 }
 
 }  // namespace

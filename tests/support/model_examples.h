@@ -30,7 +30,8 @@ inline const std::vector<ModelExample>& model_examples() {
   static const std::vector<ModelExample> examples{
       {.name = "dpd",
        .fluid = "a = 18.5\ngamma = 4.5\nkT = 1.0\n"
-                "rattler_friction = { gamma = 0.1, cutoff = 1.2 }\n",
+                "rattler_friction = { gamma = 0.1, cutoff = 1.2 }\n"
+                "antisymmetric_stress = true\n",
        .pair = "a = 30.0\ns_bar = 1.7\ngamma_perp = 1.0\n"},
       {.name = "table",
        .fluid = "force_file = \"soft.csv\"\ngamma = 4.5\nkT = 1.0\n",

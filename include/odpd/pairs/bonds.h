@@ -75,6 +75,7 @@ class BondedModel : public PairModel<D> {
     return pairs_->reference_state(mass);
   }
   double thermal_path() const override { return pairs_->thermal_path(); }
+  double lever_radius() const override { return pairs_->lever_radius(); }
   bool conservative() const override { return pairs_->conservative() || !bonds_.empty(); }
   bool thermal() const override { return pairs_->thermal(); }
   double bonded_energy(std::size_t i, const Vec<D>& r, const Box<D>& box,

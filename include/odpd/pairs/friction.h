@@ -32,9 +32,10 @@ struct FrictionParameters {
   friend bool operator==(const FrictionParameters&, const FrictionParameters&) = default;
 };
 
-/// How messages name the friction that resists a group of particles that turns as one.
+/// How messages name the friction that resists a group of particles that turns as one: that of particles that spin does not.
 inline constexpr const char* transverse_cure =
-    "friction across lines of centres (fluid.gamma_perp)";
+    "friction across lines of centres without spin (fluid.gamma_perp, with "
+    "fluid.antisymmetric_stress = true)";
 
 /// Throws ConfigError "parameter NAME = VALUE of a pair model must be RANGE" unless `ok`.
 void require_parameter(bool ok, const char* name, double value, const char* range);

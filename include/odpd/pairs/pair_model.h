@@ -77,6 +77,8 @@ class PairModel {
   /// How far a particle may come at its thermal speed in one step, sqrt(kT/m) dt (length): a larger step is warned of. Infinite where
   /// repulsion and friction alone limit steps.
   virtual double thermal_path() const { return std::numeric_limits<double>::infinity(); }
+  /// That of particles that spin where a case gives none (length); 0: they do not spin unless it does (particles/spin.h).
+  virtual double lever_radius() const { return 0.0; }
   /// Some pair has a conservative force; otherwise energy and pressure are those of an ideal gas.
   virtual bool conservative() const = 0;
   /// Some pair has kT > 0.

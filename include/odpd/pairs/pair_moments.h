@@ -22,10 +22,11 @@
 namespace odpd {
 
 struct PairMoments {
-  std::optional<double> energy;  ///< [u]
-  std::optional<double> virial;  ///< [r f_c]
-  std::optional<double> drag;    ///< [zeta_par + (d - 1) zeta_perp]
-  std::optional<double> shear;   ///< [r^2 (zeta_par + (d + 1) zeta_perp)]
+  std::optional<double> energy;      ///< [u]
+  std::optional<double> virial;      ///< [r f_c]
+  std::optional<double> drag;        ///< [zeta_par + (d - 1) zeta_perp]
+  std::optional<double> shear_par;   ///< [r^2 zeta_par]
+  std::optional<double> shear_perp;  ///< [r^2 zeta_perp]
   /// [u] beyond r_core: defined for a hard core too.
   std::optional<double> energy_beyond_core;
   double kT = 0.0;

@@ -17,6 +17,12 @@
 //   form = "central"     A = 0, B = 2 (d + 2) eta:        zeta_b = 2 eta (2D), 5/3 eta (3D); no torque on a pair
 //   form = "classical"   A = B = 2 (d + 2)/(d + 3) eta:   zeta_b = 2/5 eta (2D), 0 (3D)
 //
+// Where particles spin (`spin`) friction across lines of centres meets the symmetric part of the velocity gradient alone:
+//
+//   eta = A/4 + B/(2 (d + 2)),   zeta_b = (A + B)/(2 d)
+//
+//   form = "classical"   A = B = 4 (d + 2)/(d + 4) eta:   8/3 (2D), 20/7 eta (3D); zeta_b = 4/3 eta (2D), 20/21 eta (3D)
+//
 // A fluid of finitely many neighbours has some per cent less or more of either: docs/density-fluids.md.
 #include <memory>
 #include <vector>
@@ -42,10 +48,11 @@ struct EquationOfState {
 /// A and B for these viscosities (energy time/length^d), in `dimension` dimensions.
 struct SdpdFriction {
   double A = 0.0, B = 0.0;
+  bool spin = false;  ///< between particles that spin
 
-  static SdpdFriction of(double eta, double zeta_b, int dimension);
+  static SdpdFriction of(double eta, double zeta_b, int dimension, bool spin = false);
   static SdpdFriction central(double eta, int dimension);
-  static SdpdFriction classical(double eta, int dimension);
+  static SdpdFriction classical(double eta, int dimension, bool spin = false);
   double eta(int dimension) const;
   double zeta_b(int dimension) const;
   bool operator==(const SdpdFriction&) const = default;
@@ -89,6 +96,8 @@ class SdpdModel : public PairModel<D> {
                    const Particles<D>& particles, PairNetwork<D>& network) const override;
   const Densities* densities() const override { return &densities_; }
   std::optional<ReferenceState> reference_state(double mass) const override;
+  /// Half a spacing, where particles spin.
+  double lever_radius() const override;
   bool conservative() const override { return true; }
   bool thermal() const override { return p_.kT > 0.0; }
   const SdpdParameters& fluid() const { return p_; }

@@ -15,7 +15,7 @@ struct ExpectedViscosity {
 };
 
 /// The nearest fluid measured; nothing where none has the same dimension, form and kernel, a support within a quarter of a spacing, and
-/// kappa and Gamma within half as much again (or a Gamma below 3 where it was 0), at kT = 0, and for zeta_b of one's own.
+/// kappa and Gamma within half as much again (or a Gamma below 3 where it was 0), at kT = 0, for zeta_b of one's own, and where particles spin.
 std::optional<ExpectedViscosity> expected_viscosity(const SdpdParameters& p,
                                                     const SdpdFriction& friction, int dimension);
 

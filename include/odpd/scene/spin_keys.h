@@ -6,7 +6,11 @@
 namespace odpd {
 
 /// Sets Spin of the species; needs them, the mass and the model. The moment is that of a solid sphere (3D) or disk (2D) of the particle's
-/// mass and the lever radius, unless given. Throws ConfigError for negative numbers, a moment without a lever radius or without mass.
+/// mass and the lever radius, unless given. Throws ConfigError
+///   for negative numbers, a moment without a lever radius or without mass;
+///   where nothing turns a species that spins, as none of its pairs has friction across lines of centres;
+///   for such friction between species of which neither spins, unless fluid.antisymmetric_stress is true (or the model is "sdpd", which
+///   warns of it). Not for library users, who make such fluids on purpose.
 template <int D>
 void read_spins(const Config& config, SceneSettings<D>& scene);
 
