@@ -56,6 +56,13 @@ Simulation<D>::Simulation(const Config& config, CaseSettings settings,
   if (const std::string why = bodies_objection(settings_.integrator.name);
       !why.empty() && dynamics_.dofs().bodies() > 0)
     config.table("integrator").fail("name", why);
+  if (const std::vector<Spin>& spins = scene_.particles().spin_of_species; !spins.empty()) {
+    const bool massless = std::any_of(spins.begin(), spins.end(), [](const Spin& s) {
+      return s.lever_radius > 0.0 && s.moment == 0.0;
+    });
+    if (const std::string why = spin_objection(settings_.integrator.name, massless); !why.empty())
+      config.table("integrator").fail("name", why);
+  }
   if (const std::string why = shear_objection(settings_.integrator.name);
       !why.empty() && scene_.box().shear)
     config.table("integrator").fail("name", why);

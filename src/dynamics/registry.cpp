@@ -89,7 +89,10 @@ constexpr std::array table{
     row<Implicit, &S::theta>("implicit", {.repulsion_limits_dt = false}, {"theta", &read_theta}),
     row<Euler>("euler", {.masses = Masses::zero}),
     row<Setd, &S::order>("setd",
-                         {.masses = positive, .moves_bodies = false, .friction_limits_dt_from = 2},
+                         {.masses = positive,
+                          .moves_bodies = false,
+                          .turns_particles = false,
+                          .friction_limits_dt_from = 2},
                          {"order", &read_order}),
     row<VelocityVerlet, &S::lambda>("velocity-verlet",
                                     {.masses = positive,
@@ -153,6 +156,21 @@ std::string bodies_objection(const std::string& name) {
       "'{}' moves particles one by one, but the scene has bodies that move freely ([[body]]): use "
       "trapezoidal, at any mass",
       name);
+}
+
+std::string spin_objection(const std::string& name, bool massless) {
+  const IntegratorTraits& traits = integrator_traits(name);
+  if (!traits.turns_particles)
+    return fmt::format(
+        "'{}' knows no spins, but particles have a lever_radius: use trapezoidal, at any mass, or "
+        "shardlow",
+        name);
+  if (traits.masses == Masses::positive && massless)
+    return fmt::format(
+        "'{}' turns particles by their moment of inertia, and that of some is 0: give moment > 0, "
+        "or use trapezoidal",
+        name);
+  return {};
 }
 
 std::string shear_objection(const std::string& name) {

@@ -31,6 +31,26 @@ double relaxation(double u, double zeta, double mu, double kT, double dt, double
   return u * std::expm1(-x) + std::sqrt(-kT / mu * std::expm1(-2.0 * x)) * w;
 }
 
+// 1/I of each particle that spins, 0 for others; empty where nobody does.
+template <int D>
+std::vector<double> inverse_moments(const Particles<D>& particles) {
+  std::vector<double> over(particles.spin_of_species.empty() ? 0 : particles.position.size());
+  for (std::size_t i = 0; i < over.size(); ++i)
+    if (particles.spins(i))
+      over[i] = 1.0 / particles.spin_of_species[index(particles.species[i])].moment;
+  return over;
+}
+
+// mu_perp of edge k, mu its reduced mass: the same where neither end turns.
+template <int D>
+double turning_mass(const PairNetwork<D>& network, std::size_t k,
+                    const std::vector<double>& over_moment, double mu) {
+  if (over_moment.empty() || network.lever_i.empty()) return mu;
+  const double i = network.lever_i[k], j = network.lever_j[k];
+  return 1.0 / (1.0 / mu + i * i * over_moment[index(network.i[k])] +
+                j * j * over_moment[index(network.j[k])]);
+}
+
 }  // namespace
 
 void EdgeColours::assign(std::span<const std::int32_t> i, std::span<const std::int32_t> j,
@@ -67,15 +87,17 @@ void Shardlow<D>::kick(Dynamics<D>& dynamics, double dt, std::vector<Vec<D>>& ve
 // Friction and noise of all pairs. The record gets what friction at the start's velocities leaves of the force that
 // acted.
 template <int D>
-void Shardlow<D>::exchange(Dynamics<D>& dynamics, const Clock& clock,
-                           std::vector<Vec<D>>& velocity) {
+void Shardlow<D>::exchange(Dynamics<D>& dynamics, const Clock& clock, std::vector<Vec<D>>& velocity,
+                           std::vector<Vec<D>>& spin) {
   const Particles<D>& particles = dynamics.particles();
   const PairNetwork<D>& network = this->record_.start.network;
   const double mass = dynamics.constants().mass;
   std::vector<char> free(velocity.size());
   for (std::size_t i = 0; i < free.size(); ++i) free[i] = particles.is_free(i) ? 1 : 0;
   colours_.assign(network.i, network.j, free);
-  const std::vector<Vec<D>>& start = this->record_.start.velocity;
+  const std::vector<Vec<D>>&start = this->record_.start.velocity,
+        &start_spin = this->record_.start.spin;
+  const std::vector<double> over_moment = inverse_moments(particles);
   std::vector<Vec<D>>& edge_force = this->record_.edge_noise;
   edge_force.resize(index(network.size()));
   const PairRandom random(dynamics.settings().seed, static_cast<std::uint64_t>(clock.step));
@@ -85,19 +107,26 @@ void Shardlow<D>::exchange(Dynamics<D>& dynamics, const Clock& clock,
     const Vec<D>& e = network.e[k];
     const double mu = free[i] && free[j] ? 0.5 * mass : mass;
     const EdgeNormals<D> w(random, network, particles, k);
-    const Vec<D> slip = network.slip(k, velocity);
+    const Vec<D> slip = network.slip(k, velocity, spin);
     const double along = dot(slip, e);
     Vec<D> change = relaxation(along, network.zeta_par[k], mu, network.kT[k], clock.dt,
                                thermal ? w.along() : 0.0) *
                     e;
     if (network.zeta_perp[k] > 0.0) {
       const Vec<D> across = slip - along * e, n = thermal ? w.across() : Vec<D>{};
+      const double mu_perp = turning_mass(network, k, over_moment, mu), share = mu_perp / mu;
       for (int c = 0; c < D; ++c)
-        change[c] += relaxation(across[c], network.zeta_perp[k], mu, network.kT[k], clock.dt, n[c]);
+        change[c] += share * relaxation(across[c], network.zeta_perp[k], mu_perp, network.kT[k],
+                                        clock.dt, n[c]);
+    }
+    if (!over_moment.empty() && !network.lever_i.empty()) {
+      const Vec<D> turn = torque(e, mu * change);
+      if (over_moment[i] > 0.0) spin[i] -= network.lever_i[k] * over_moment[i] * turn;
+      if (over_moment[j] > 0.0) spin[j] -= network.lever_j[k] * over_moment[j] * turn;
     }
     if (free[i]) velocity[i] += (mu / mass) * change;
     if (free[j]) velocity[j] -= (mu / mass) * change;
-    const Vec<D> first = network.slip(k, start);
+    const Vec<D> first = network.slip(k, start, start_spin);
     const double zeta = network.zeta_par[k] - network.zeta_perp[k];
     edge_force[k] =
         (mu / clock.dt) * change + zeta * dot(first, e) * e + network.zeta_perp[k] * first;
@@ -129,21 +158,25 @@ const StepRecord<D>& Shardlow<D>::step(Dynamics<D>& dynamics, const Clock& clock
   auto& record = this->record_;
   Motion<D>& motion = dynamics.motion();
   this->begin(dynamics, clock);
-  std::vector<Vec<D>> velocity = motion.velocities(record.start, motion.end_velocity(record.start));
+  const std::vector<double> end = motion.end_velocity(record.start);
+  std::vector<Vec<D>> velocity = motion.velocities(record.start, end);
+  std::vector<Vec<D>> spin = motion.spins(record.start, end);
   if (begun_) kick(dynamics, 0.5 * clock.dt, velocity);
   record.start.velocity = velocity;
+  record.start.spin = spin;
   record.v_start = velocity;
+  record.w_start = spin;
   {
     const PhaseTimer timer(dynamics.phases(), Phase::solve);
-    exchange(dynamics, clock, velocity);
+    exchange(dynamics, clock, velocity, spin);
     drag(dynamics, clock, velocity);
   }
   kick(dynamics, 0.5 * clock.dt, velocity);
-  record.v_mid = velocity;
-  record.alarm_crossings += motion.move(record.v_mid, clock.dt, clock.time());
   begun_ = true;
   std::vector<double> q;
-  dynamics.dofs().gather({}, velocity, q);
+  dynamics.dofs().gather({}, velocity, spin, q);
+  this->move(dynamics, clock, q);
+  dynamics.dofs().times_inertia({}, q);
   motion.set_end_momentum(q);
   return record;
 }

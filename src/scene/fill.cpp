@@ -154,6 +154,20 @@ void append_molecule_species(const SceneSettings<D>& settings, bool given,
       }
 }
 
+// With the variance kT/I, where there is a moment of inertia.
+template <int D>
+void draw_spins(double kT, const CounterRandom& random, Particles<D>& particles) {
+  if (particles.spin_of_species.empty()) return;
+  particles.carry_spins(true);
+  for (std::size_t i = 0; i < particles.position.size(); ++i) {
+    const double moment = particles.spin_of_species[index(particles.species[i])].moment;
+    if (!particles.spins(i) || moment == 0.0) continue;
+    const auto w = random.normals(0, 1, static_cast<std::uint64_t>(particles.id[i]), 0);
+    for (std::size_t c = 0; c < index(rotation_components<D>); ++c)
+      particles.end_spin[i].x[c] = std::sqrt(kT / moment) * w[c];
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -293,6 +307,7 @@ void draw_velocities(std::uint64_t seed, double kT, double mass, bool conserved,
   own.ranks->sum(std::span(mean.x));
   for (std::size_t i = 0; i < particles.position.size() && conserved; ++i)
     if (!particles.is_known(i)) particles.end_velocity[i] -= mean;
+  draw_spins(kT, random, particles);
   // The rigid part of independent velocities has the right variance.
   std::vector<Vec<D>> arms, velocities;
   const std::vector<std::int32_t> index_of = particles.index_of_id();

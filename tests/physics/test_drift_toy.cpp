@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <string>
 
 #include "odpd/dynamics/integrator.h"
 #include "odpd/operator/edge_sums.h"
@@ -31,8 +33,10 @@ void for_each_centre(const Place& place) {
     for (int y = 0; y < side; ++y) place(Vec<2>{{(x + 0.5) * spacing, (y + 0.5) * spacing}});
 }
 
-DpdModel<2> friction_only(double cutoff) {
-  return DpdModel<2>(1, {DpdParameters{.a = 0.0, .gamma = 4.5, .s = 0.5, .cutoff = cutoff}});
+DpdModel<2> friction_only(double cutoff, double gamma_perp = 0.0) {
+  return DpdModel<2>(
+      1, {DpdParameters{
+             .a = 0.0, .gamma = 4.5, .gamma_perp = gamma_perp, .s = 0.5, .cutoff = cutoff}});
 }
 
 // --- a free particle in a harmonic trap, strong friction in its middle ---
@@ -50,9 +54,38 @@ class Traps : public NoSurroundings<2> {
   }
 };
 
+enum class Noise { stored, reprojected };
+
+// A massless step of two stages whose second draws its noise with the edges at r*.
+void reprojected_step(Dynamics<2>& dynamics, const Clock& clock, Stage<2>& stage) {
+  Particles<2>& particles = dynamics.particles();
+  std::vector<Vec<2>> edge_noise, mean(particles.position.size()), r = particles.position;
+  std::vector<double> q(static_cast<std::size_t>(dynamics.dofs().unknowns()));
+  for (int second = 0; second < 2; ++second) {
+    dynamics.evaluate(r, clock.time(), stage);
+    std::vector<double> load = dynamics.draw_noise(stage, clock.step, clock.dt, edge_noise);
+    const std::vector<double> rest = dynamics.force(stage);
+    for (std::size_t k = 0; k < load.size(); ++k) load[k] += rest[k];
+    dynamics.solve(stage, load, {}, q);
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      mean[i] += 0.5 * stage.velocity[i];
+      r[i] += clock.dt * stage.velocity[i];
+    }
+  }
+  dynamics.motion().move(mean, clock.dt, clock.time());
+}
+
+struct TrapRun {
+  std::string scheme;  ///< "reprojected": of the function above
+  std::int64_t steps;
+  double mass = 0.0;
+  std::optional<Spin> spin = {};  ///< then friction across lines of centres, too
+};
+
 // Fraction of the time spent closer than `reach` to the centre, relative to 1 - exp(-trap reach^2/2).
-double population(const std::string& scheme, std::int64_t steps, double mass = 0.0) {
+double population(const TrapRun& run) {
   Particles<2> particles;
+  if (run.spin) particles.spin_of_species = {*run.spin};
   for_each_centre([&](const Vec<2>& c) {
     particles.add(c + Vec<2>{{0.3, 0.2}}, 0);
     particles.add(c, 0, odpd::Group::wall(0));  // strong friction close by
@@ -61,17 +94,23 @@ double population(const std::string& scheme, std::int64_t steps, double mass = 0
       particles.add(c + 1.2 * Vec<2>{{std::cos(angle), std::sin(angle)}}, 0, odpd::Group::wall(0));
     }
   });
-  const DpdModel<2> model = friction_only(3.0);
-  const Traps traps({.mass = mass});
+  const DpdModel<2> model = friction_only(3.0, run.spin ? 4.5 : 0.0);
+  const Traps traps({.mass = run.mass});
   Dynamics<2> dynamics(toy_box(), particles, model, traps,
                        make_solver({.name = "pcg", .tolerance = 1e-9}), DynamicsSettings{});
-  const auto integrator = make_integrator<2>(scheme);
-  Clock clock{.dt = 0.01, .total_steps = steps};
+  const bool reprojected = run.scheme == "reprojected";
+  const auto integrator = make_integrator<2>(reprojected ? "trapezoidal" : run.scheme);
+  Stage<2> stage;
+  Clock clock{.dt = 0.01, .total_steps = run.steps};
   double inside = 0.0, all = 0.0;
   while (!clock.finished()) {
-    integrator->step(dynamics, clock);
+    if (reprojected) {
+      reprojected_step(dynamics, clock, stage);
+    } else {
+      integrator->step(dynamics, clock);
+    }
     clock.advance();
-    if (clock.step < steps / 20) continue;
+    if (clock.step < run.steps / 20) continue;
     for (std::size_t i = 0; i < particles.position.size(); ++i) {
       if (!particles.is_free(i)) continue;
       all += 1.0;
@@ -79,6 +118,9 @@ double population(const std::string& scheme, std::int64_t steps, double mass = 0
     }
   }
   return inside / all / (1.0 - std::exp(-0.5 * trap * reach * reach));
+}
+double population(const std::string& scheme, std::int64_t steps, double mass = 0.0) {
+  return population(TrapRun{scheme, steps, mass});
 }
 
 // 400 copies over t = 60, decorrelating within about 0.5: standard error about 0.8 %, so 3 % is almost four of them.
@@ -100,12 +142,27 @@ TEST(DriftToy, SoAreSchemesWithMass) {
 // Measured: 0.80, ten standard errors (1.5 % over half the time) beyond this bound's distance from 1.
 TEST(DriftToy, EulerIsRejected) { EXPECT_LT(population("euler", 3000), 0.88); }
 
+// The same particle with a lever radius, which friction across the lines of centres turns: its spin is one more unknown.
+TEST(SpinDriftToy, SchemesWithTheDriftAreExact) {
+  for (const char* scheme : {"trapezoidal", "midpoint", "extrapolated"})
+    EXPECT_NEAR(population({scheme, 6000, 0.0, Spin{0.5, 0.0}}), 1.0, 0.03) << scheme;
+}
+
+TEST(SpinDriftToy, SoAreSchemesWithInertiaOrLittleOfIt) {
+  EXPECT_NEAR(population({"shardlow", 6000, 0.1, Spin{0.5, 0.01}}), 1.0, 0.03);
+  for (const double mass : {0.1, 1e-4})
+    EXPECT_NEAR(population({"trapezoidal", 6000, mass, Spin{0.5, 0.1 * mass}}), 1.0, 0.03) << mass;
+}
+
+TEST(SpinDriftToy, ReprojectedNoiseAndEulerAreRejected) {
+  EXPECT_GT(population({"reprojected", 2000, 0.0, Spin{0.5, 0.0}}), 1.3);
+  EXPECT_LT(population({"euler", 3000, 0.0, Spin{0.5, 0.0}}), 0.9);
+}
+
 // --- a rigid rotor: one unknown, its angle; the tip at distance `arm` feels frozen particles ---
 
 constexpr double arm = 1.0;
 constexpr double barrier = 0.5;  // U = -barrier cos(angle)
-
-enum class Noise { stored, reprojected };
 
 // Angles of rotors pinned at the centres, the tip a free particle as far as edges and noise go. P maps the angular velocity
 // to that of the tip, P = arm (-sin, cos); the same stochastic trapezoidal rule (or its first stage alone) for the one

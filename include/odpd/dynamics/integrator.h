@@ -102,8 +102,9 @@ struct IntegratorTraits {
   bool two_stages = false;
   /// v_mid is the velocity of half a step that the scheme goes on from, and v_start the mean of two of them.
   bool half_way_velocity = false;
-  bool moves_bodies = true;  ///< rigid bodies of unknown motion
-  bool runs_sheared = true;  ///< under [shear]
+  bool moves_bodies = true;     ///< rigid bodies of unknown motion
+  bool turns_particles = true;  ///< that spin
+  bool runs_sheared = true;     ///< under [shear]
   /// Explicit in the conservative force: its stiffness limits dt.
   bool repulsion_limits_dt = true;
   bool takes_implicit_bonds = false;  ///< may treat bonds alone implicitly (`implicit_bonds`)
@@ -130,6 +131,9 @@ IntegratorSettings read_integrator(const Config& config);
 std::string mass_objection(const std::string& name, double mass);
 /// Why this integrator cannot move rigid bodies of unknown motion; empty when it can.
 std::string bodies_objection(const std::string& name);
+/// Why this integrator cannot turn particles that spin, some of them (`massless`) without a moment of inertia, with the remedy; empty
+/// when it can.
+std::string spin_objection(const std::string& name, bool massless);
 /// Why this integrator cannot run under [shear], with the remedy; empty when it can.
 std::string shear_objection(const std::string& name);
 /// Throws ConfigError for an unknown name, listing the names.

@@ -5,6 +5,12 @@
 //
 //   u' = u e^{-zeta dt/mu} + sqrt(kT/mu (1 - e^{-2 zeta dt/mu})) w         (the same for each direction across e)
 //
+// Where particles spin (particles/spin.h) an impulse across e turns both, so that across e
+//
+//   1/mu_perp = 1/m_i + 1/m_j + l_i^2/I_i + l_j^2/I_j        (terms of what moves freely)
+//
+// and w_i changes by -l_i e x impulse/I_i, which needs moments of inertia I > 0. Angular momentum is conserved to rounding.
+//
 // then the uniform drag zeta_0 the same way per particle. One evaluation per step. Edges are taken colour by colour,
 // where the edges of a colour share no particle: the same bits on any thread count.
 // Drift: with mass the equations have none to miss; equilibrium is sampled exactly as far as the splitting goes. Order
@@ -45,7 +51,8 @@ class Shardlow : public Integrator<D> {
 
  private:
   void kick(Dynamics<D>& dynamics, double dt, std::vector<Vec<D>>& velocity) const;
-  void exchange(Dynamics<D>& dynamics, const Clock& clock, std::vector<Vec<D>>& velocity);
+  void exchange(Dynamics<D>& dynamics, const Clock& clock, std::vector<Vec<D>>& velocity,
+                std::vector<Vec<D>>& spin);
   void drag(Dynamics<D>& dynamics, const Clock& clock, std::vector<Vec<D>>& velocity) const;
 
   bool begun_ = false;  // the end velocity waits for the second half of its kick

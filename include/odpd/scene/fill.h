@@ -21,7 +21,8 @@ void place_fluid(const SceneSettings<D>& settings, const Vec<D>& low, const Vec<
                  Particles<D>& particles);
 
 /// Gives the free particles Maxwell velocities of variance kT/mass per component, on top of a `flow`; where nothing takes
-/// momentum away (`conserved`) their mean is zero. With mass 0 nothing.
+/// momentum away (`conserved`) their mean is zero; and angular velocities of variance kT/I, where they spin with a moment of inertia I.
+/// With mass 0 nothing.
 template <int D>
 void draw_velocities(std::uint64_t seed, double kT, double mass, bool conserved,
                      const std::function<Vec<D>(const Vec<D>&)>& flow, Particles<D>& particles);

@@ -1,0 +1,66 @@
+// A fluid of particles that spin: kT/m and kT/I are the variances of velocities and angular velocities, whatever the mass.
+#include <gtest/gtest.h>
+
+#include "support/spinning.h"
+
+namespace odpd {
+namespace {
+
+struct SpinTemperatures {
+  double moving = 0.0, turning = 0.0;  ///< over kT
+};
+
+template <int D>
+SpinTemperatures spin_temperatures(const std::string& scheme, double mass, double dt,
+                                   std::int64_t steps) {
+  support::Spinning<D> toy({.fluid = {.a = 18.5, .gamma = 4.5, .gamma_perp = 4.5},
+                            .radii = {0.4, 0.7},
+                            .mass = mass,
+                            .moment = 0.1 * mass,
+                            .count = D == 2 ? 400 : 375,
+                            .edge = D == 2 ? 10.0 : 5.0,
+                            .periodic = true,
+                            .tolerance = 1e-5});
+  const auto integrator = make_integrator<D>(scheme);
+  integrator->prepare(*toy.dynamics);
+  SpinTemperatures t;
+  double samples = 0.0;
+  for (Clock clock{.dt = dt, .total_steps = steps}; !clock.finished(); clock.advance()) {
+    const StepRecord<D>& record = integrator->step(*toy.dynamics, clock);
+    if (clock.step < steps / 5) continue;
+    const auto n = static_cast<double>(record.v_start.size());
+    for (std::size_t i = 0; i < record.v_start.size(); ++i) {
+      t.moving += mass * dot(record.v_start[i], record.v_start[i]) / (D * (n - 1.0));
+      t.turning += 0.1 * mass * dot(record.w_start[i], record.w_start[i]) /
+                   (static_cast<double>(rotation_components<D>) * n);
+    }
+    samples += 1.0;
+  }
+  return {t.moving / samples, t.turning / samples};
+}
+
+// Standard errors 0.3 to 0.4 %.
+TEST(SpinTemperature, IsThatOfTheNoiseAtEveryMass) {
+  for (const double mass : {1.0, 0.03, 1e-3}) {
+    const SpinTemperatures t = spin_temperatures<2>("trapezoidal", mass, 0.01, 1500);
+    EXPECT_NEAR(t.moving, 1.0, 0.015) << mass;
+    EXPECT_NEAR(t.turning, 1.0, 0.015) << mass;
+  }
+}
+
+TEST(SpinTemperature, IsThatOfTheNoiseInSpaceToo) {
+  const SpinTemperatures t = spin_temperatures<3>("trapezoidal", 0.1, 0.01, 400);
+  EXPECT_NEAR(t.moving, 1.0, 0.015);
+  EXPECT_NEAR(t.turning, 1.0, 0.015);
+}
+
+TEST(SpinTemperature, ExplicitSchemesHoldItAtShortSteps) {
+  for (const char* scheme : {"shardlow", "velocity-verlet"}) {
+    const SpinTemperatures t = spin_temperatures<2>(scheme, 1.0, 0.004, 4000);
+    EXPECT_NEAR(t.moving, 1.0, 0.02) << scheme;
+    EXPECT_NEAR(t.turning, 1.0, 0.02) << scheme;
+  }
+}
+
+}  // namespace
+}  // namespace odpd
