@@ -15,14 +15,15 @@ double drag_times_square(double a) {
   return 2.0 * D * std::numbers::pi * std::pow(a, D);
 }
 
-template <int D>
-SuspensionKind kind_of(const SceneSettings<D>& s, const BodySettings<D>& b, double particles,
-                       double kT) {
-  const auto bodies = static_cast<double>(b.bodies());
+// Of `count` bodies, or molecules, of `sites` particles together.
+template <int D, class Body>
+SuspensionKind kind_of(const SceneSettings<D>& s, const Body& b, std::int64_t count,
+                       std::int64_t sites, double particles, double kT) {
+  const auto bodies = static_cast<double>(count);
   const double volume = s.fluid_volume();
   SuspensionKind kind{.name = b.name,
-                      .bodies = b.bodies(),
-                      .number_fraction = static_cast<double>(b.particles()) / particles,
+                      .bodies = count,
+                      .number_fraction = static_cast<double>(sites) / particles,
                       .exclusion_fraction = {},
                       .hydrodynamic_fraction = {},
                       .peclet_of_unit_eta = {}};
@@ -72,24 +73,39 @@ std::optional<Suspension> suspension_of(const Scene<D>& scene) {
     excluded += b.excluded_volume;
     radii += b.hydrodynamic_radius;
   }
+  const auto of_known_size = [](const MoleculeSettings<D>& m) {
+    return m.excluded_volume + m.hydrodynamic_radius > 0.0;
+  };
+  double strangers = 0.0;  // beads of molecules of which nothing is known
+  for (const MoleculeSettings<D>& m : s.molecules) {
+    const auto beads = static_cast<double>(m.molecules() * m.beads());
+    (of_known_size(m) ? sites : strangers) += beads;
+    excluded += m.excluded_volume;
+    radii += m.hydrodynamic_radius;
+  }
   if (!(excluded + radii > 0.0)) return {};
-  const auto free = static_cast<double>(particles.free_count());
+  const double free = static_cast<double>(particles.free_count() - s.molecule_beads()) + strangers;
   Suspension all;
   all.together = {.name = "together",
                   .exclusion_fraction = 0.0,
                   .hydrodynamic_fraction = 0.0,
                   .peclet_of_unit_eta = {}};
-  for (const BodySettings<D>& b : s.bodies) {
-    all.kinds.push_back(kind_of(s, b, free + sites, scene.largest_kT()));
-    const SuspensionKind& kind = all.kinds.back();
+  const double kT = scene.largest_kT();
+  for (const BodySettings<D>& b : s.bodies)
+    all.kinds.push_back(kind_of(s, b, b.bodies(), b.particles(), free + sites, kT));
+  for (const MoleculeSettings<D>& m : s.molecules)
+    if (of_known_size(m))
+      all.kinds.push_back(
+          kind_of(s, m, m.molecules(), m.molecules() * m.beads(), free + sites, kT));
+  for (const SuspensionKind& kind : all.kinds) {
     SuspensionKind& t = all.together;
     t.bodies += kind.bodies;
     t.number_fraction += kind.number_fraction;
     t.exclusion_fraction = sum(t.exclusion_fraction, kind.exclusion_fraction);
     t.hydrodynamic_fraction = sum(t.hydrodynamic_fraction, kind.hydrodynamic_fraction);
   }
-  // What molecules take from the fluid nobody knows.
-  if (all.together.exclusion_fraction && s.molecules.empty())
+  // What other molecules take from the fluid nobody knows.
+  if (all.together.exclusion_fraction && strangers == 0.0)
     all.bulk_density = free / (s.fluid_volume() * (1.0 - *all.together.exclusion_fraction));
   all.fluid = known_viscosity(scene, all.bulk_density.value_or(free / s.fluid_volume()));
   return all;

@@ -30,6 +30,7 @@ DpdModel<D>::DpdModel(int species, std::vector<DpdParameters> parameters, DpdFlu
     cutoff_ = std::max({cutoff_, p.cutoff, p.friction().reach()});
     conservative_ = conservative_ || p.a > 0.0;
     thermal_ = thermal_ || p.kT > 0.0;
+    reaches_.push_back(p.friction().reach());
   }
 }
 
@@ -44,11 +45,12 @@ PairTerms DpdModel<D>::terms(double r, Site site_i, Site site_j) const {
   const DpdParameters& p = of.p;
   PairTerms t;
   of.friction(r, t);
-  const double x = 1.0 - r / p.cutoff;
+  const double width = p.cutoff - p.core, x = 1.0 - (r - p.core) / width;
   if (x > 0.0 && p.a > 0.0) {
-    t.f_c = p.a * of.w_c(x);
-    t.k_c = p.s_bar / p.cutoff * (t.f_c / x);
-    t.u = p.a * p.cutoff / (p.s_bar + 1.0) * of.energy(x);
+    const double beyond = std::min(x, 1.0);
+    t.f_c = p.a * of.w_c(beyond);
+    t.k_c = r < p.core ? 0.0 : p.s_bar / width * (t.f_c / x);
+    t.u = p.a * width / (p.s_bar + 1.0) * of.energy(beyond) + p.a * std::max(0.0, p.core - r);
   }
   return t;
 }
@@ -74,9 +76,9 @@ void DpdModel<D>::write_edges(const PairList<D>& list, const Box<D>& box,
   };
   const bool alike =
       std::all_of(table_.begin(), table_.end(), [&](const Entry& entry) { return entry.p == p; });
-  if (!alike || !quick(p.s) || !quick(p.s_bar))
+  if (!alike || p.core > 0.0 || !quick(p.s) || !quick(p.s_bar))
     return write_pair_edges([this](double r, Site i, Site j) { return terms(r, i, j); }, cutoff_,
-                            list, box, positions, particles, network);
+                            list, box, positions, particles, network, reaches_);
   const bool far = p.gamma_far > 0.0, even = p.a == 0.0 || (p.s_bar == 1.0 && !far);
   network.transverse = p.gamma_perp > 0.0;
   // What is one number for all edges, or else is written by the kernel.

@@ -17,6 +17,7 @@ void set_friction(const FrictionParameters& f, DpdParameters& p) {
   p.kT = f.kT;
   p.gamma_far = f.gamma_far;
   p.cutoff_far = f.cutoff_far;
+  p.core = f.core;
 }
 
 // Keys of [fluid] (`whole`) or one pair of species, `base` where they are absent.

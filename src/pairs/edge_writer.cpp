@@ -1,6 +1,7 @@
 #include "odpd/pairs/edge_writer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "edge_kernels.h"
@@ -54,7 +55,7 @@ class Writer {
 
   Writer(const PairList<D>& list, double cutoff, const Box<D>& box,
          std::span<const Vec<D>> positions, const Particles<D>& particles, const Fill& fill,
-         PairNetwork<D>& network, Pairs wanted)
+         PairNetwork<D>& network, Pairs wanted, std::span<const double> reaches)
       : kernel_(for_isa(kernels::edge_portable, kernels::edge_avx2, kernels::edge_avx512)),
         list_(list),
         reach2_(cutoff * cutoff),
@@ -69,6 +70,10 @@ class Writer {
       images_.half[c] =
           box.periodic[c] ? 0.5 * box.size.x[c] : std::numeric_limits<double>::infinity();
     }
+    // Where all reach as far as the cutoff there is nothing to look up.
+    if (std::any_of(reaches.begin(), reaches.end(), [&](double r) { return r < cutoff; }))
+      for (const double r : reaches) reaches2_.push_back(r * r);
+    species_ = std::llround(std::sqrt(static_cast<double>(reaches2_.size())));
     network_.particles = list.rows();
     network_.first.resize(index(list.rows()) + 1);
   }
@@ -77,8 +82,9 @@ class Writer {
     const bool known = std::any_of(particles_.group.begin(), particles_.group.end(),
                                    [](Group group) { return !group.is_free(); });
     if (wanted_ == Pairs::rigid && !known) return network_.resize(0);
-    // A list without skin has the edges themselves and the rigid pairs, but for a pair at the cutoff, to rounding.
-    if (list_.skin() > 0.0 || wanted_ == Pairs::rigid ||
+    // A list without skin has the edges themselves and the rigid pairs, but for a pair at the cutoff, to rounding; where some
+    // species reach less far it has more.
+    if (list_.skin() > 0.0 || !reaches2_.empty() || wanted_ == Pairs::rigid ||
         !write_all(known ? Rows::within : Rows::whole))
       write_all(Rows::near);
     if (wanted_ == Pairs::moving) network_.index_rows();
@@ -140,10 +146,16 @@ class Writer {
         pairs.size = 0;
         for (const std::int32_t q : some) pairs.add(positions_[p], positions_[index(q)]);
         pairs.close(kernel_, images_, box_);
-        for (std::size_t l = 0; l < some.size(); ++l) take(some[l], pairs.square[l] < reach2_);
+        for (std::size_t l = 0; l < some.size(); ++l)
+          take(some[l], pairs.square[l] < reach2_of(p, index(some[l])));
       }
     }
     contacts_[p] = static_cast<std::int32_t>(out - (network_.scratch.data() + candidates_[p]));
+  }
+
+  double reach2_of(std::size_t p, std::size_t q) const {
+    if (reaches2_.empty()) return reach2_;
+    return reaches2_[index(particles_.species[p] * species_ + particles_.species[q])];
   }
 
   // Writes all edges, given the partners of each particle. False when some are not closer than the cutoff.
@@ -196,6 +208,8 @@ class Writer {
   const PairList<D>& list_;
   kernels::Images images_{};
   double reach2_;
+  std::vector<double> reaches2_;  // of each pair of species; empty: reach2_
+  std::int64_t species_ = 0;
   std::span<const Vec<D>> positions_;
   const Particles<D>& particles_;
   const Fill& fill_;
@@ -213,8 +227,8 @@ template <int D>
 void write_edge_geometry(const PairList<D>& list, double cutoff, const Box<D>& box,
                          std::span<const Vec<D>> positions, const Particles<D>& particles,
                          const std::function<void(PairNetwork<D>&, std::size_t, std::size_t)>& fill,
-                         PairNetwork<D>& network) {
-  Writer<D>(list, cutoff, box, positions, particles, fill, network, Pairs::moving).write();
+                         PairNetwork<D>& network, std::span<const double> reaches) {
+  Writer<D>(list, cutoff, box, positions, particles, fill, network, Pairs::moving, reaches).write();
 }
 
 template <int D>
@@ -222,13 +236,14 @@ void write_rigid_geometry(const PairList<D>& list, double cutoff, const Box<D>& 
                           std::span<const Vec<D>> positions, const Particles<D>& particles,
                           PairNetwork<D>& network) {
   const typename Writer<D>::Fill nothing = [](PairNetwork<D>&, std::size_t, std::size_t) {};
-  Writer<D>(list, cutoff, box, positions, particles, nothing, network, Pairs::rigid).write();
+  Writer<D>(list, cutoff, box, positions, particles, nothing, network, Pairs::rigid, {}).write();
 }
 
 #define ODPD_INSTANTIATE(D)                                                                    \
   template void write_edge_geometry<D>(                                                        \
       const PairList<D>&, double, const Box<D>&, std::span<const Vec<D>>, const Particles<D>&, \
-      const std::function<void(PairNetwork<D>&, std::size_t, std::size_t)>&, PairNetwork<D>&); \
+      const std::function<void(PairNetwork<D>&, std::size_t, std::size_t)>&, PairNetwork<D>&,  \
+      std::span<const double>);                                                                \
   template void write_rigid_geometry<D>(const PairList<D>&, double, const Box<D>&,             \
                                         std::span<const Vec<D>>, const Particles<D>&,          \
                                         PairNetwork<D>&);

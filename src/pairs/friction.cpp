@@ -17,6 +17,8 @@ void validate(const FrictionParameters& p) {
   require_parameter(p.gamma_perp >= 0.0, "gamma_perp", p.gamma_perp, "zero or positive");
   require_parameter(p.s >= 0.0, "s", p.s, "zero or positive");
   require_parameter(p.cutoff > 0.0, "cutoff", p.cutoff, "positive");
+  require_parameter(p.core >= 0.0 && p.core < p.cutoff, "core", p.core,
+                    "zero or positive, and smaller than the cutoff");
   require_parameter(p.kT >= 0.0, "kT", p.kT, "zero or positive");
   require_parameter(p.gamma_far >= 0.0, "gamma_far", p.gamma_far, "zero or positive");
   require_parameter(p.gamma_far == 0.0 || p.cutoff_far > p.cutoff, "cutoff_far", p.cutoff_far,
@@ -27,6 +29,12 @@ FrictionParameters read_friction(const Config& keys, const FrictionParameters& b
   FrictionParameters p = base;
   if (whole) p.kT = keys.non_negative("kT");
   p.cutoff = keys.positive("cutoff", base.cutoff);
+  if (!whole) p.core = keys.non_negative("core", base.core);
+  if (p.core >= p.cutoff)
+    keys.fail("core",
+              fmt::format("must be smaller than the cutoff of the pair, {}: force and friction "
+                          "go to zero from the core to there",
+                          p.cutoff));
   p.s = keys.non_negative("s", base.s);
   p.gamma_perp = keys.non_negative("gamma_perp", base.gamma_perp);
   if (keys.has("gamma") && keys.has("sigma"))

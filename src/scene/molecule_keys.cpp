@@ -87,6 +87,8 @@ void read_beads(const Config& entry, const std::string& shape, MoleculeSettings<
     m.species_names.erase(m.species_names.begin());
     if (m.shape.empty())
       entry.fail("points", "a shape of points needs some: points = [{ at = [0.0, ...] }, ...]");
+  } else if (shape == "particle") {
+    m.shape.emplace_back();
   } else if (shape != "chain" && shape != "walk") {
     m.shape = corners<D>(entry, shape);
   } else {
@@ -221,6 +223,11 @@ void read_places(const Config& entry, const Box<D>& box, MoleculeSettings<D>& m)
   if (!m.positions.empty() && entry.has("count"))
     entry.fail("count", "give positions or count, never both");
   if (m.positions.empty()) m.count = entry.positive_integer("count", 1);
+  if (!m.positions.empty() && entry.has("clearance"))
+    entry.fail("clearance", "it is kept by random places, and positions are given");
+  m.clearance = entry.non_negative("clearance", 0.0);
+  if (m.clearance > 0.0 && m.walk > 0.0)
+    entry.fail("clearance", "a random walk lies anywhere: leave it out, or use another shape");
   if (!m.positions.empty() && m.walk > 0.0)
     entry.fail("positions", "a random walk lies anywhere: give count, or shape = \"chain\"");
 }
@@ -258,7 +265,7 @@ MoleculeSettings<D> read_molecule(const Config& entry, const Box<D>& box) {
   m.name = entry.text("name", m.name);
   if (!is_plain_name(m.name))
     entry.fail("name", "use letters, digits, _ and -: it goes into file columns");
-  std::vector<std::string> shapes{"chain", "walk", "simplex", "points"};
+  std::vector<std::string> shapes{"chain", "walk", "simplex", "points", "particle"};
   if (D > 2) shapes.insert(shapes.end(), {"octahedron", "cube"});
   const std::string shape = entry.choice("shape", shapes);
   m.species_names = {entry.text("species")};
@@ -273,7 +280,9 @@ MoleculeSettings<D> read_molecule(const Config& entry, const Box<D>& box) {
 template <int D>
 void read_molecules(const Config& config, SceneSettings<D>& scene) {
   for (const Config& entry : config.tables("molecule")) {
-    scene.molecules.push_back(read_molecule<D>(entry, scene.box));
+    MoleculeSettings<D> molecule = read_molecule<D>(entry, scene.box);
+    read_molecule_sizes(entry, scene, molecule);
+    scene.molecules.push_back(std::move(molecule));
     auto& m = scene.molecules.back();
     for (std::size_t k = 0; k + 1 < scene.molecules.size(); ++k)
       if (scene.molecules[k].name == m.name)

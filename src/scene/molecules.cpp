@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <queue>
 
@@ -11,6 +12,7 @@
 #include "odpd/scene/bodies.h"
 #include "odpd/scene/body_room.h"
 #include "odpd/scene/fill.h"
+#include "odpd/scene/random_places.h"
 
 namespace odpd {
 
@@ -31,10 +33,11 @@ class Room {
         bodies_(box, particles) {}
 
   /// Unwrapped positions of the beads of molecule `number`; none where there is no room.
-  std::vector<Vec<D>> beads(const MoleculeSettings<D>& m, std::uint64_t number) const {
+  std::vector<Vec<D>> beads(const MoleculeSettings<D>& m, std::uint64_t number,
+                            const Vec<D>* at) const {
     for (std::uint64_t attempt = 0; attempt < most_places; ++attempt) {
       std::vector<Vec<D>> beads =
-          m.walk > 0.0 ? walk(m, attempt, number) : turned(m, attempt, number);
+          m.walk > 0.0 ? walk(m, attempt, number) : turned(m, attempt, number, at);
       if (!beads.empty()) return beads;
     }
     return {};
@@ -48,7 +51,9 @@ class Room {
     return !bodies_.holds(r);
   }
 
-  Vec<D> centre(std::uint64_t attempt, std::uint64_t number) const {
+  // `at`: where it is to be; else anywhere.
+  Vec<D> centre(std::uint64_t attempt, std::uint64_t number, const Vec<D>* at) const {
+    if (at != nullptr) return *at;
     const auto u = random_.uniforms(attempt, 0, number, 0);
     Vec<D> r;
     for (int c = 0; c < D; ++c) r[c] = low_[c] + (high_[c] - low_[c]) * u[index(c)];
@@ -56,12 +61,12 @@ class Room {
   }
 
   std::vector<Vec<D>> turned(const MoleculeSettings<D>& m, std::uint64_t attempt,
-                             std::uint64_t number) const {
+                             std::uint64_t number, const Vec<D>* at) const {
     Rotation<D> orientation;
     turn_at_random(random_.uniforms(attempt, 1, number, 0), orientation);
     std::vector<Vec<D>> beads;
     for (const Vec<D>& bead : m.shape) {
-      beads.push_back(centre(attempt, number) + orientation.turn(bead));
+      beads.push_back(centre(attempt, number, at) + orientation.turn(bead));
       if (!is_open(beads.back())) return {};
     }
     return beads;
@@ -69,7 +74,7 @@ class Room {
 
   std::vector<Vec<D>> walk(const MoleculeSettings<D>& m, std::uint64_t attempt,
                            std::uint64_t number) const {
-    std::vector<Vec<D>> beads{centre(attempt, number)};
+    std::vector<Vec<D>> beads{centre(attempt, number, nullptr)};
     if (!is_open(beads[0])) return {};
     while (beads.size() < m.shape.size()) {
       Vec<D> next{};
@@ -91,6 +96,46 @@ class Room {
   CounterRandom random_;
   const BodyRoom<D> bodies_;
 };
+
+// Centres of all molecules that keep clear of each other, of all others with known places and of bodies, in the order of the entries.
+template <int D>
+std::vector<Vec<D>> clear_places(const std::vector<MoleculeSettings<D>>& settings,
+                                 const Box<D>& box, const Vec<D>& low, const Vec<D>& high,
+                                 std::uint64_t seed, const Particles<D>& particles) {
+  BallCells<D> there(box);
+  std::vector<double> radii;
+  double volume = 0.0;
+  std::string name;
+  for (const RigidBody<D>& body : particles.bodies) {
+    double radius = 0.0;
+    for (const Vec<D>& b : body.frame) radius = std::max(radius, norm(b));
+    there.add(body.pose.centre, radius);
+  }
+  for (const MoleculeSettings<D>& m : settings) {
+    double radius = 0.5 * m.clearance;
+    for (const Vec<D>& b : m.shape) radius = std::max(radius, norm(b) + 0.5 * m.clearance);
+    for (Vec<D> centre : m.positions) {
+      box.wrap(centre);
+      there.add(centre, radius);
+    }
+    if (!m.positions.empty() || m.clearance == 0.0) continue;
+    radii.insert(radii.end(), index(m.count), radius);
+    volume += static_cast<double>(m.count) * unit_ball_volume<D> * std::pow(radius, D);
+    name = m.name;
+  }
+  if (radii.empty()) return {};
+  const double share = volume / Box<D>{high - low, {}}.volume();
+  RandomPlaces<D> found{.centres = {}, .attempts = {}, .scale = 0.0};
+  // Bodies have tried the places of the seed itself.
+  if (share < 1.0) found = find_random_places<D>(box, low, high, there, radii, seed + 1);
+  if (found.scale < 1.0)
+    throw ConfigError(fmt::format(
+        "[[molecule]] '{}': no places were found for {} molecules that keep their clearance: with "
+        "half of it around each they would fill {:.3g} of the space; lower count or clearance, "
+        "give positions, or use a larger box",
+        name, radii.size(), share));
+  return found.centres;
+}
 
 }  // namespace
 
@@ -134,12 +179,15 @@ void place_molecules(const std::vector<MoleculeSettings<D>>& settings, const Box
                      const Vec<D>& low, const Vec<D>& high, std::uint64_t seed,
                      Particles<D>& particles) {
   const Room<D> room(box, low, high, seed, particles);
+  const std::vector<Vec<D>> places = clear_places(settings, box, low, high, seed, particles);
   std::uint64_t number = 0;
+  std::size_t place = 0;
   for (const MoleculeSettings<D>& m : settings)
     for (std::int64_t n = 0; n < m.molecules(); ++n) {
       std::vector<Vec<D>> beads = m.shape;
       if (m.positions.empty()) {
-        beads = room.beads(m, number++);
+        const bool clear = m.clearance > 0.0;
+        beads = room.beads(m, number++, clear ? &places[place++] : nullptr);
         if (beads.empty())
           throw ConfigError(fmt::format(
               "[[molecule]] '{}': no room was found for molecule {} of {}: use a larger "

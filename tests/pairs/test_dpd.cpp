@@ -94,6 +94,23 @@ TEST(Dpd, FarFrictionIsAddedAlongTheLineOnly) {
   EXPECT_EQ(terms(p, 2.0).zeta_par, 0.0);
 }
 
+// Beyond the core as without it, at the part of the way to the cutoff; nearer, one force.
+TEST(Dpd, ACoreMovesBothWeightsOutwards) {
+  DpdParameters p = standard();
+  p.core = 0.4;
+  const double width = 0.8;
+  EXPECT_EQ(DpdModel<2>(1, {p}).kinks(Site{0}, Site{0}), (std::vector{0.4, 1.2}));
+  for (const double r : {0.0, 0.2, 0.39, 0.4, 0.7, 1.1, 1.2}) {
+    const double x = std::max(0.0, std::min(1.0, (1.2 - r) / width));
+    const PairTerms t = terms(p, r);
+    EXPECT_NEAR(t.zeta_par, p.gamma * std::sqrt(x), 1e-7);
+    EXPECT_NEAR(t.zeta_perp, p.gamma_perp * std::sqrt(x), 1e-7);
+    EXPECT_NEAR(t.f_c, p.a * std::pow(x, 1.5), 1e-13);
+    EXPECT_NEAR(t.u, p.a * (width / 2.5 * std::pow(x, 2.5) + std::max(0.0, 0.4 - r)), 1e-13);
+    EXPECT_NEAR(t.k_c, r < 0.4 ? 0.0 : p.a * 1.5 / width * std::sqrt(x), 1e-6);
+  }
+}
+
 TEST(Dpd, RefusesParametersOutOfRange) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto refuse = [](const char* name, const std::function<void(DpdParameters&)>& spoil) {
@@ -109,6 +126,8 @@ TEST(Dpd, RefusesParametersOutOfRange) {
   refuse("parameter s ", [](auto& p) { p.s = -0.5; });
   refuse("cutoff", [](auto& p) { p.cutoff = 0.0; });
   refuse("cutoff", [&](auto& p) { p.cutoff = nan; });
+  refuse("core", [](auto& p) { p.core = p.cutoff; });
+  refuse("core", [](auto& p) { p.core = -0.1; });
   refuse("kT", [](auto& p) { p.kT = -0.1; });
   refuse("gamma_far", [](auto& p) { p.gamma_far = -0.1; });
   refuse("cutoff_far", [](auto& p) {

@@ -100,6 +100,36 @@ TYPED_TEST(EdgesTest, OneEdgeForEveryPairThatMoves) {
   EXPECT_FALSE(n.transverse);
 }
 
+// A colloid reaches far; the fluid's particles have no edges beyond their own cutoff.
+TYPED_TEST(EdgesTest, EachPairOfSpeciesReachesAsFarAsItsOwnCutoff) {
+  constexpr int D = TypeParam::D;
+  Fluid<D> fluid(4.0, true, D == 2 ? 90 : 250, 9);
+  for (std::size_t i = 0; i < fluid.particles.species.size(); i += 9)
+    fluid.particles.species[i] = 1;
+  DpdParameters aa, ab, bb;
+  aa.cutoff = 0.8;
+  ab.cutoff = 1.3;
+  bb.cutoff = 1.6;
+  const DpdModel<D> model(2, {aa, ab, ab, bb});
+  const auto& r = fluid.particles.position;
+  std::vector<std::pair<std::int32_t, std::int32_t>> expected;
+  for (std::size_t i = 0; i < r.size(); ++i)
+    for (std::size_t j = i + 1; j < r.size(); ++j) {
+      const int colloids = fluid.particles.species[i] + fluid.particles.species[j];
+      const double reach = colloids == 0 ? 0.8 : colloids == 1 ? 1.3 : 1.6;
+      if (fluid.particles.is_known(i) && fluid.particles.is_known(j)) continue;
+      if (norm(fluid.box.separation(r[i], r[j])) < reach)
+        expected.emplace_back(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+    }
+  for (const double skin : {0.3, 0.0}) {
+    fluid.connect(model, skin);
+    std::vector<std::pair<std::int32_t, std::int32_t>> found;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(fluid.network.size()); ++k)
+      found.emplace_back(fluid.network.i[k], fluid.network.j[k]);
+    EXPECT_EQ(found, expected);
+  }
+}
+
 TYPED_TEST(EdgesTest, TheIndexNamesTheEdgesOfEachParticle) {
   constexpr int D = TypeParam::D;
   Fluid<D> fluid(3.0, true, 80, 6, 0.5);

@@ -240,6 +240,58 @@ shape = ")" + shape + (by_radius ? "\"\nradius = 0.2" : "\"\nspacing = 0.2"));
   }
 }
 
+// Colloids of one particle: apart from each other, and the fluid relaxed out of their cores.
+TEST(Molecules, OfOneParticleKeepTheirClearance) {
+  const std::string text = std::string(cases::periodic) + R"(
+[[species]]
+name = "fluid"
+[[species]]
+name = "colloid"
+count = 0
+[[pair]]
+species = ["fluid", "colloid"]
+a = 60.0
+core = 0.6
+cutoff = 1.1
+[[molecule]]
+name = "ball"
+shape = "particle"
+species = "colloid"
+count = 5
+clearance = 1.7
+hydrodynamic_radius = 0.7
+excluded_volume = 1.5
+)";
+  const auto s = cases::settings<3>(text);
+  EXPECT_EQ(s.molecules.at(0).excluded_volume, 1.5);
+  EXPECT_EQ(s.molecules.at(0).hydrodynamic_radius, 0.7);
+  const Scene<3> scene(s), as_placed(cases::settings<3>(text, {"start.relax_sweeps=0"}));
+  const auto& p = scene.particles();
+  EXPECT_EQ(p.free_count(), 180 + 5);
+  std::int64_t inside = 0;
+  double nearest = 100.0;
+  for (std::size_t i = 0; i < p.position.size(); ++i) {
+    if (p.species[i] != 1) continue;
+    for (std::size_t j = 0; j < p.position.size(); ++j) {
+      const auto& q = as_placed.particles().position;
+      if (p.species[j] == 1 && i != j)
+        nearest = std::min(nearest, norm(scene.box().separation(q[i], q[j])));
+      if (p.species[j] == 0 && norm(scene.box().separation(p.position[i], p.position[j])) < 0.6)
+        ++inside;
+    }
+  }
+  EXPECT_EQ(inside, 0);
+  EXPECT_GE(nearest, 1.7);
+  support::expect_error<odpd::ConfigError>(
+      [&] { Scene<3>(cases::settings<3>(text, {"molecule.0.clearance=2.6"})); },
+      {"[[molecule]] 'ball'", "5 molecules", "clearance"});
+  support::expect_error<odpd::ConfigError>(
+      [&] { cases::settings<3>(text, {"molecule.0.excluded_volume=15.0"}); },
+      {"excluded_volume", "75 of the 60"});
+  support::expect_error<odpd::ConfigError>([&] { cases::settings<3>(text, {"pair.0.core=1.1"}); },
+                                           {"core", "smaller than the cutoff of the pair, 1.1"});
+}
+
 TEST(Molecules, HaveCornersBySpacingOrRadius) {
   expect_corners<2>("simplex", 3, 2, 1.0 / std::sqrt(3.0));
   expect_corners<3>("simplex", 4, 3, std::sqrt(3.0 / 8.0));

@@ -2,7 +2,7 @@
 // A suspension by its numbers. Of N_b bodies of a kind, with p sites each, among N_s particles of fluid in a volume V between the walls:
 //
 //   number fraction         N_b p/N                  sites over all N particles but those of walls
-//   exclusion fraction      N_b v_ex/V               `excluded_volume` of its [[body]]
+//   exclusion fraction      N_b v_ex/V               `excluded_volume` of its [[body]], or [[molecule]]
 //   hydrodynamic fraction   N_b (4 pi/3) a^3/V       in 2D N_b pi a^2/V; `hydrodynamic_radius`
 //   Peclet number           6 pi eta a^3 rate/kT     in 2D 4 pi eta a^2 rate/kT; under [shear]
 //   bulk density            N_s/(V - sum N_b v_ex)   of the fluid between the bodies
@@ -34,7 +34,7 @@ struct Suspension {
   KnownViscosity fluid;
 };
 
-/// Nothing where no [[body]] gives a hydrodynamic radius or an excluded volume.
+/// Nothing where no [[body]] and no [[molecule]] gives a hydrodynamic radius or an excluded volume.
 template <int D>
 std::optional<Suspension> suspension_of(const Scene<D>& scene);
 

@@ -4,6 +4,10 @@
 //   f_c = a w_C,  w_C = (1 - r/r_c)^s_bar        u = a r_c/(s_bar + 1) (1 - r/r_c)^(s_bar + 1)
 //   zeta_par = gamma w_D,  w_D = (1 - r/r_c)^s    sigma^2 = 2 gamma kT
 //
+// A pair with a core of radius c has x = 1 - (r - c)/(r_c - c) in place of 1 - r/r_c beyond it. Nearer than that w_C = w_D = 1,
+//
+//   u = a (r_c - c)/(s_bar + 1) + a (c - r),   f_c = a,   k_c = 0
+//
 // Optional: friction across the line of centres, zeta_perp = gamma_perp w_D, and a weak pairwise friction of longer
 // range, gamma_far (1 - r/r_far)^s added to zeta_par, which keeps R regular where particles lose their neighbours.
 // Both carry their own noise, since the noise of an edge follows from its friction.
@@ -38,6 +42,7 @@ class DpdModel : public PairModel<D> {
   std::string name() const override { return "dpd"; }
   int species() const override { return species_; }
   double cutoff() const override { return cutoff_; }
+  std::span<const double> reaches() const override { return reaches_; }
   PairTerms pair(double r, Site site_i, Site site_j) const override {
     return terms(r, site_i, site_j);
   }
@@ -68,6 +73,7 @@ class DpdModel : public PairModel<D> {
 
   int species_;
   std::vector<Entry> table_;
+  std::vector<double> reaches_;
   DpdFluid fluid_;
   double cutoff_ = 0.0;
   bool conservative_ = false;

@@ -15,9 +15,10 @@ struct DpdParameters {
   double kT = 1.0;          ///< temperature (energy)
   double gamma_far = 0.0;   ///< weak friction of longer range (mass/time)
   double cutoff_far = 0.0;  ///< its range r_far (length)
+  double core = 0.0;        ///< distance from which on both weights fall from 1 (length)
 
   FrictionParameters friction() const {
-    return {gamma, gamma_perp, s, cutoff, kT, gamma_far, cutoff_far};
+    return {gamma, gamma_perp, s, cutoff, kT, gamma_far, cutoff_far, core};
   }
   friend bool operator==(const DpdParameters&, const DpdParameters&) = default;
 };

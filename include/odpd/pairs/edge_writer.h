@@ -19,14 +19,15 @@ Vec<D> overlap_direction(std::int64_t id_i, std::int64_t id_j) {
   return (id_i < id_j ? 1.0 : -1.0) / norm(e) * e;
 }
 
-/// Fills i, j, e, r and the index of `network` with the pairs of the list closer than the cutoff. `fill(begin, end)` then
+/// Fills i, j, e, r and the index of `network` with the pairs of the list closer than the cutoff, and closer than the one of `reaches` that
+/// is of their species (PairModel::reaches). `fill(begin, end)` then
 /// writes the other columns of the edges begin <= k < end, from r, while these are close at hand. It may run on any thread, and
 /// again for the same edges: it must not add to what it finds, nor sum over them.
 template <int D>
 void write_edge_geometry(const PairList<D>& list, double cutoff, const Box<D>& box,
                          std::span<const Vec<D>> positions, const Particles<D>& particles,
                          const std::function<void(PairNetwork<D>&, std::size_t, std::size_t)>& fill,
-                         PairNetwork<D>& network);
+                         PairNetwork<D>& network, std::span<const double> reaches = {});
 
 /// The columns of the edges begin <= k < end that `terms(r, site_i, site_j)`, the model's inline pair function, gives for what
 /// `site(i)` says of a particle.
@@ -49,14 +50,14 @@ void fill_terms(const Terms& terms, const SiteOf& site, std::size_t begin, std::
 template <int D, class Terms>
 void write_pair_edges(const Terms& terms, double cutoff, const PairList<D>& list, const Box<D>& box,
                       std::span<const Vec<D>> positions, const Particles<D>& particles,
-                      PairNetwork<D>& network) {
+                      PairNetwork<D>& network, std::span<const double> reaches = {}) {
   for (Column* column : {&network.u, &network.k_c, &network.zeta_perp, &network.kT}) column->each();
   const auto site = [&](std::size_t i) { return site_of(particles, i); };
   const auto fill = [&](PairNetwork<D>& n, std::size_t begin, std::size_t end) {
     fill_terms(terms, site, begin, end, n);
   };
   network.densities.resize(0, 0);
-  write_edge_geometry<D>(list, cutoff, box, positions, particles, fill, network);
+  write_edge_geometry<D>(list, cutoff, box, positions, particles, fill, network, reaches);
   network.transverse = false;
   for (const double z : network.zeta_perp.each()) network.transverse |= z != 0.0;
 }

@@ -39,6 +39,7 @@ class ForceModel : public InlineModel<D, ForceModel<D, Force>> {
       cutoff_ = std::max(cutoff_, f.friction.reach());
       conservative_ = conservative_ || f.acts();
       thermal_ = thermal_ || f.friction.kT > 0.0;
+      reaches_.push_back(f.friction.reach());
     }
   }
 
@@ -53,6 +54,7 @@ class ForceModel : public InlineModel<D, ForceModel<D, Force>> {
   std::string name() const override { return Force::name; }
   int species() const override { return species_; }
   double cutoff() const override { return cutoff_; }
+  std::span<const double> reaches() const override { return reaches_; }
   std::vector<double> kinks(Site site_i, Site site_j) const override {
     return entry(site_i, site_j).force.friction.kinks();
   }
@@ -78,6 +80,7 @@ class ForceModel : public InlineModel<D, ForceModel<D, Force>> {
 
   int species_;
   std::vector<Entry> table_;
+  std::vector<double> reaches_;
   double cutoff_ = 0.0;
   bool conservative_ = false, thermal_ = false;
 };

@@ -21,7 +21,7 @@ class InlineModel : public PairModel<D> {
   void write_edges(const PairList<D>& list, const Box<D>& box, std::span<const Vec<D>> positions,
                    const Particles<D>& particles, PairNetwork<D>& network) const final {
     write_pair_edges([this](double r, Site i, Site j) { return model().terms(r, i, j); },
-                     this->cutoff(), list, box, positions, particles, network);
+                     this->cutoff(), list, box, positions, particles, network, this->reaches());
   }
 
  private:

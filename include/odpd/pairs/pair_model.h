@@ -54,6 +54,8 @@ class PairModel {
   virtual int species() const { return 0; }
   /// Largest distance at which a pair interacts (length).
   virtual double cutoff() const = 0;
+  /// Of each pair of species [A * species + B], the distance beyond which it has no edge (length); empty: that is the cutoff for all.
+  virtual std::span<const double> reaches() const { return {}; }
   /// Terms of one pair at distance r >= 0; all but kT, which does not depend on r, are zero beyond the cutoff. In a model with
   /// densities its energy, force and stiffness are those of the pair part u alone, and its friction is that at the densities
   /// of the sites.
@@ -61,7 +63,7 @@ class PairModel {
   /// Where a term of this pair of species is not smooth in r > 0, ascending, the end of its last term among them: integrals over r
   /// stop there.
   virtual std::vector<double> kinks(Site, Site) const { return {cutoff()}; }
-  /// Replaces `network` by the edges of all pairs of the list closer than the cutoff at these positions.
+  /// Replaces `network` by the edges of all pairs of the list closer than the reach of their species at these positions.
   virtual void write_edges(const PairList<D>& list, const Box<D>& box,
                            std::span<const Vec<D>> positions, const Particles<D>& particles,
                            PairNetwork<D>& network) const = 0;

@@ -1,6 +1,7 @@
 #pragma once
 // Molecules of a scene: particles of their own, free like the fluid's, joined by bonds: chains, and colloids of a few
-// particles held by springs (Phan-Thien et al. 2016, sec. 4.3).
+// particles held by springs (Phan-Thien et al. 2016, sec. 4.3). Without bonds a molecule is one particle: a colloid where its species
+// has a core and spins (Pan, Pivkin & Karniadakis 2008).
 #include <string>
 #include <vector>
 
@@ -29,6 +30,11 @@ struct MoleculeSettings {
       0.0;  ///< above 0: beads tied by such springs to a rigid frame of the shape (force/length)
   std::int64_t count = 1;         ///< at random positions, where there are no `positions`
   std::vector<Vec<D>> positions;  ///< of the centres, the shape as it stands there (length)
+  /// Free space around a molecule at a random place, to the next one (length); 0: they may lie anywhere.
+  double clearance = 0.0;
+  // As of a [[body]] (scene/bodies.h); 0: not known.
+  double hydrodynamic_radius = 0.0;  ///< (length)
+  double excluded_volume = 0.0;      ///< (length^d)
 
   std::int64_t molecules() const {
     return positions.empty() ? count : static_cast<std::int64_t>(positions.size());
@@ -42,7 +48,7 @@ struct Molecule {
   std::int64_t first = 0;
 };
 
-/// Reads one [[molecule]] but for `species`. Throws ConfigError, also for a bond that is out of its reach in the shape, or
+/// Reads one [[molecule]] but for `species` and its sizes. Throws ConfigError, also for a bond that is out of its reach in the shape, or
 /// as long as half a periodic edge of the box.
 template <int D>
 MoleculeSettings<D> read_molecule(const Config& entry, const Box<D>& box);

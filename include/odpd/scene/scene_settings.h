@@ -130,6 +130,11 @@ SceneSettings<D> read_scene_settings(const Config& config,
 template <int D>
 void read_molecules(const Config& config, SceneSettings<D>& scene);
 
+/// Reads `hydrodynamic_radius` and `excluded_volume` of a [[molecule]], as read_body_sizes does.
+template <int D>
+void read_molecule_sizes(const Config& entry, const SceneSettings<D>& scene,
+                         MoleculeSettings<D>& molecule);
+
 /// Index of a species name; ConfigError at `key` listing the names.
 std::int32_t species_index(const std::vector<SpeciesSettings>& species, const Config& where,
                            const std::string& key, const std::string& name);
