@@ -32,8 +32,8 @@ struct Row {
 // The frozen problem, with and without the centre of mass held, and the tightest answer to each.
 template <int D>
 struct FrozenProblem {
-  RigidResistance<D> as_posed;
-  RigidResistance<D> held;
+  SpinResistance<D> as_posed;
+  SpinResistance<D> held;
   std::vector<double> b;
   std::vector<double> exact_as_posed, exact_held;
 };
@@ -72,16 +72,16 @@ FrozenProblem<D> freeze(Simulation<D>& simulation, std::int64_t steps) {
   const std::vector<double> xi = dynamics.draw_noise(stage, clock.step, clock.dt, edge_noise);
   const bool hold = simulation.settings().dynamics.hold_centre_of_mass;
   FrozenProblem<D> problem{
-      RigidResistance<D>(stage.box, hold), RigidResistance<D>(stage.box, true), {}, {}, {}};
+      SpinResistance<D>(stage.box, hold), SpinResistance<D>(stage.box, true), {}, {}, {}};
   // The first solve of a step with implicit friction.
   problem.b = dynamics.force(stage);
   const double inertia = dynamics.inertia(clock.dt);
   const std::vector<double> momentum =
       dynamics.motion().times_inertia(stage, dynamics.motion().end_velocity(stage), inertia);
   for (std::size_t k = 0; k < problem.b.size(); ++k) problem.b[k] += xi[k] + momentum[k];
-  for (RigidResistance<D>* r : {&problem.as_posed, &problem.held})
+  for (SpinResistance<D>* r : {&problem.as_posed, &problem.held})
     r->rebuild(stage.network, dynamics.dofs(), dynamics.particles(), stage.position, stage.arms,
-               inertia + dynamics.constants().zeta_0);
+               {inertia, dynamics.constants().zeta_0});
   problem.as_posed.scale_load(problem.b);
   problem.exact_as_posed = tightest(problem.as_posed.system(), problem.b);
   problem.exact_held = tightest(problem.held.system(), problem.b);

@@ -97,23 +97,23 @@ TYPED_TEST(SpinSolvers, TheLocalPartIsDefinite) {
   EXPECT_GT(largest_eigenvalue(sparse, false), 2.2);
 }
 
-TYPED_TEST(SpinSolvers, IterationsAreThoseWithoutSpinsAndDoNotGrow) {
+// Of the same particles with friction along lines of centres alone: the viscous fluid without spins.
+TYPED_TEST(SpinSolvers, IterationsAreThoseOfTheFluidWithoutSpins) {
   constexpr int D = TypeParam::D;
+  std::vector<double> x;
   for (const bool walls : {false, true})
-    for (const double gamma_perp : {2.25, 4.5}) {
-      std::vector<double> x;
-      std::vector<std::int64_t> iterations;
-      for (const std::size_t count : {std::size_t{4000}, std::size_t{20000}}) {
+    for (const std::size_t count : {std::size_t{4000}, std::size_t{12000}}) {
+      const toys::RandomFluid<D> plain(count, walls ? toys::Ends::walls : toys::Ends::periodic);
+      const std::int64_t central = solve_spins(plain.resistance, "multilevel", 1e-7, x).iterations;
+      for (const double gamma_perp : {2.25, 9.0}) {
         const SpinFluid<D> toy({.count = count, .walls = walls, .gamma_perp = gamma_perp});
         const SolveReport report = solve_spins(toy.system(), "multilevel", 1e-7, x);
         ASSERT_TRUE(report.converged) << report.failure;
         EXPECT_EQ(report.note, "");
-        iterations.push_back(report.iterations);
+        EXPECT_LE(5 * report.iterations, 6 * central)
+            << report.iterations << " of " << central << ", gamma_perp " << gamma_perp
+            << (walls ? ", walls, N " : ", N ") << count;
       }
-      const toys::RandomFluid<D> plain(4000, walls ? toys::Ends::walls : toys::Ends::periodic);
-      const std::int64_t central = solve_spins(plain.resistance, "multilevel", 1e-7, x).iterations;
-      EXPECT_LE(5 * iterations[0], 6 * central);
-      EXPECT_LE(iterations[1], iterations[0] + 3);
     }
 }
 
