@@ -46,15 +46,13 @@ struct Spinning {
                                              DynamicsSettings{});
   }
 
-  /// Random force, friction and conservative force on i of each edge of a stage.
-  std::vector<Vec<D>> edge_forces(const Stage<D>& stage, const std::vector<Vec<D>>& noise) const {
+  /// Friction and conservative force on i of each edge of a stage.
+  std::vector<Vec<D>> edge_forces(const Stage<D>& stage) const {
     std::vector<Vec<D>> force;
-    for (std::size_t k = 0; k < stage.network.r.size(); ++k) {
+    for (std::size_t k = 0; k < stage.network.r.size(); ++k)
       force.push_back(
           stage.network.push(k) +
           friction_of(stage.network, k, stage.network.slip(k, stage.velocity, stage.spin)));
-      if (!noise.empty()) force.back() += noise[k];
-    }
     return force;
   }
   /// sum m r x v + I w, of particles at r.
