@@ -101,6 +101,8 @@ double peak_bytes(const Simulation<D>& simulation, const Stage<D>& stage) {
     size.bodies += 1.0;
     size.constituents += static_cast<double>(body.members.size());
   }
+  for (std::size_t k = 0; k < stage.network.lever_i.size(); ++k)
+    if (stage.network.lever_i[k] + stage.network.lever_j[k] > 0.0) size.levers += 1.0;
   double bytes = run_bytes<D>(size);
   // Force, answer and what lies between: of one particle, seven vectors. Of one edge three: slips, tensions and forces by them.
   if (solves_of_observers(simulation) > 0.0)

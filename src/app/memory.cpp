@@ -19,6 +19,7 @@ namespace {
 constexpr double bytes_at_first = 45e6, bytes_per_body = 250.0;
 constexpr std::array<double, 2> bytes_per_particle{1110.0, 1980.0}, bytes_per_edge{204.0, 230.0};
 constexpr std::array<double, 2> more_per_particle{65.0, 110.0}, bytes_per_constituent{150.0, 60.0};
+constexpr std::array<double, 2> bytes_per_lever{300.0, 380.0};
 // Of larger bodies inner pairs count as edges: to look at all would take longer than a moment.
 constexpr std::size_t most_constituents = 4000;
 
@@ -47,6 +48,15 @@ double inner_pairs(const std::vector<Vec<D>>& shape, double cutoff) {
   for (std::size_t i = 0; i < shape.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) pairs += norm(shape[i] - shape[j]) < cutoff ? 1.0 : 0.0;
   return pairs;
+}
+
+// Part of the fluid's particles that spins.
+double spinning_part(const std::vector<SpeciesSettings>& species, double particles) {
+  double part = 0.0;
+  for (const SpeciesSettings& s : species)
+    if (s.lever_radius > 0.0)
+      part += s.count < 0 ? s.fraction : static_cast<double>(s.count) / std::max(particles, 1.0);
+  return std::min(part, 1.0);
 }
 
 std::string in_units(double bytes) {
@@ -81,7 +91,8 @@ double run_bytes(const RunSize& size) {
   const double per_particle =
       bytes_per_particle[d] + (size.bodies > 0.0 ? more_per_particle[d] : 0.0);
   return bytes_at_first + per_particle * size.particles + bytes_per_edge[d] * size.edges +
-         bytes_per_body * size.bodies + bytes_per_constituent[d] * size.constituents;
+         bytes_per_body * size.bodies + bytes_per_constituent[d] * size.constituents +
+         bytes_per_lever[d] * size.levers;
 }
 
 template <int D>
@@ -125,6 +136,8 @@ MemoryNeed memory_need(const SceneSettings<D>& scene) {
               })->keys;
   const double pairs = 0.5 * n * n / volume * unit_ball_volume<D> * std::pow(r_c, D);
   need.size.edges = std::max(0.0, pairs - within_bodies);
+  const double still = 1.0 - spinning_part(scene.species, shares[0].particles);
+  need.size.levers = need.size.edges * (1.0 - still * still);
   // Position and velocity, image, identity, species and group.
   need.least = n * (2.0 * sizeof(Vec<D>) + D * sizeof(std::int32_t) + 16.0);
   need.bytes = run_bytes<D>(need.size);

@@ -5,6 +5,7 @@
 //   inside a body
 //   bytes = 45e6 + 1110 N + 204 E (2D),  45e6 + 1980 N + 230 E (3D)
 //         + 65 N + 150 N_c + 250 B (2D), 110 N + 60 N_c + 250 B (3D) with B free bodies of N_c constituents in all
+//         + 300 E_s (2D), 380 E_s (3D) with E_s edges that have lever arms (particles/spin.h)
 //
 // The coefficients are those of the largest resident memory of runs with pcg and trapezoidal (docs/performance.md).
 #include "odpd/scene/scene_settings.h"
@@ -14,6 +15,7 @@ namespace odpd {
 struct RunSize {
   double particles = 0.0, edges = 0.0;
   double bodies = 0.0, constituents = 0.0;  ///< free bodies, and their constituents
+  double levers = 0.0;                      ///< edges with lever arms
 };
 
 /// At the peak of a run, about.
