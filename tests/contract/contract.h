@@ -21,14 +21,16 @@
 
 namespace contract {
 
-enum class Model { central, transverse, far_friction, spinning };
+/// spinning_fluid: spinning, but walls and bodies have no lever radius.
+enum class Model { central, transverse, far_friction, spinning, spinning_fluid };
 enum class Geometry { walls, periodic, open, obstacles, suspension, rods, sheared };
 
 inline std::string name(Model model) {
-  return model == Model::central      ? "central"
-         : model == Model::transverse ? "transverse"
-         : model == Model::spinning   ? "spinning"
-                                      : "far";
+  return model == Model::central          ? "central"
+         : model == Model::transverse     ? "transverse"
+         : model == Model::spinning       ? "spinning"
+         : model == Model::spinning_fluid ? "spinning_fluid"
+                                          : "far";
 }
 inline std::string name(Geometry geometry) {
   return geometry == Geometry::walls       ? "walls"
@@ -94,11 +96,13 @@ odpd::SceneSettings<D> settings(Model model, Geometry geometry, double length) {
     p.gamma_far = 0.1;
     p.cutoff_far = 1.5;
   }
-  if (model == Model::spinning) {
+  if (model == Model::spinning || model == Model::spinning_fluid) {
     // A third of the fluid does not spin. Walls and bodies are of the first species.
     s.species = {{.name = "a", .fraction = 0.4, .lever_radius = 0.3},
                  {.name = "b", .fraction = 0.3, .lever_radius = 0.7},
                  {.name = "c", .fraction = 0.3}};
+    if (model == Model::spinning_fluid)
+      std::swap(s.species[0].lever_radius, s.species[2].lever_radius);
     p.gamma_perp = 1.5;
   }
   s.model = odpd::make_dpd<D>(p, static_cast<int>(s.species.size()));

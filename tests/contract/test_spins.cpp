@@ -164,4 +164,36 @@ TEST_P(Spins, EverySolverFindsTheDenseSolution) {
     check<3>();
 }
 
+/// pcg with this preconditioner on bodies in a fluid that spins; its note.
+template <int D>
+std::string spins_beside_bodies(contract::Model model, double tolerance, std::vector<double>& x) {
+  const auto& instant =
+      contract::instant_of<D>(model, contract::Geometry::suspension, D == 2 ? 6.0 : 3.7);
+  EXPECT_GT(instant.spins().spins(), 0);
+  EXPECT_GT(instant.rigid().map().bodies(), 0);
+  const auto solver = odpd::make_solver({.tolerance = tolerance, .preconditioner = "multilevel"});
+  solver->bind(*instant.system);
+  x.assign(instant.load.size(), 0.0);
+  const odpd::SolveReport report = solver->solve(instant.load, x);
+  EXPECT_TRUE(report.converged) << report.failure;
+  EXPECT_LE(contract::true_residual(*instant.system, instant.load, x), 1.01 * tolerance);
+  const auto exact = odpd::make_solver({.name = "cholmod", .tolerance = 1e-11});
+  exact->bind(*instant.system);
+  std::vector<double> y(x.size(), 0.0);
+  EXPECT_TRUE(exact->solve(instant.load, y).converged);
+  EXPECT_LT(contract::distance(x, y), 1e-7);
+  return report.note;
+}
+
+// With its grid beside bodies without lever radius; their own spins are for double precision, and it says so.
+TEST(SpinsAndBodies, PcgSaysWhereItsGridDoesNotServe) {
+  std::vector<double> x;
+  EXPECT_EQ(spins_beside_bodies<2>(contract::Model::spinning_fluid, 1e-10, x), "");
+  EXPECT_EQ(spins_beside_bodies<3>(contract::Model::spinning_fluid, 1e-10, x), "");
+  EXPECT_NE(spins_beside_bodies<2>(contract::Model::spinning, 1e-10, x).find("block-Jacobi"),
+            std::string::npos);
+  EXPECT_NE(spins_beside_bodies<3>(contract::Model::spinning, 1e-10, x).find("block-Jacobi"),
+            std::string::npos);
+}
+
 }  // namespace
