@@ -126,21 +126,28 @@ std::unique_ptr<Observer<D>> Bodies<D>::make(const ObserverEntry<D>& entry) {
 }
 
 template <int D>
-void Bodies<D>::add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& noise,
-                          const std::vector<Vec<D>>& noise_arms, double weight,
+void Bodies<D>::add_stage(const Stage<D>& stage, const StepRecord<D>& record,
+                          const ParticleLoads<D>& noise, double weight,
                           std::vector<double>& sample) const {
   std::vector<Vec<D>> force(stage.position.size());
   add_conservative_forces(stage.network, force);
   add_friction_forces<D>(stage.network, stage.velocity, force, stage.spin);
   add_sliding_friction(stage.network, force);
+  std::vector<Vec<D>> own_torque = noise.torque;  // about the constituents' centres
+  if (!stage.spin.empty()) {
+    add_friction_torques<D>(stage.network, stage.velocity, stage.spin, own_torque);
+    add_sliding_torques(stage.network, own_torque);
+  }
   for (std::size_t b = 0; b < kind_.size(); ++b) {
     Vec<D> total{}, moment{};
     for (const std::int32_t particle : members_[b]) {
       const auto p = index(particle);
       if (!stage.network.owned.owns(p)) continue;
-      total += weight * (force[p] + noise[p]);
+      total += weight * (force[p] + noise.force[p]);
       // The random torque acts with the arms of the step's start in both stages, as the scheme has it.
-      moment += weight * (torque(stage.arms[p], force[p]) + torque(noise_arms[p], noise[p]));
+      moment +=
+          weight * (torque(stage.arms[p], force[p]) + torque(record.start.arms[p], noise.force[p]));
+      if (!own_torque.empty()) moment += weight * own_torque[p];
     }
     double* const out = &sample[kind_[b] * width];
     for (std::size_t c = 0; c < D; ++c) out[c] += share_[kind_[b]] * total.x[c];
@@ -257,12 +264,16 @@ template <int D>
 void Bodies<D>::measure(const Clock&, const Particles<D>& particles, const StepRecord<D>& record) {
   std::vector<double> sample(this->average().width(), 0.0);
   members_ = Constituents(particles);
-  std::vector<Vec<D>> noise(record.start.position.size());
-  if (!record.edge_noise.empty())
-    add_edge_forces<D>(record.start.network, record.edge_noise, noise);
-  add_stage(record.start, noise, record.start.arms, record.start_weight, sample);
+  ParticleLoads<D> noise{std::vector<Vec<D>>(record.start.position.size())};
+  if (!record.start.spin.empty()) noise.torque.resize(noise.force.size());
+  if (!record.edge_noise.empty()) {
+    add_edge_forces<D>(record.start.network, record.edge_noise, noise.force);
+    if (!noise.torque.empty())
+      add_edge_torques<D>(record.start.network, record.edge_noise, noise.torque);
+  }
+  add_stage(record.start, record, noise, record.start_weight, sample);
   if (record.has_corrector())
-    add_stage(record.corrector, noise, record.start.arms, 1.0 - record.start_weight, sample);
+    add_stage(record.corrector, record, noise, 1.0 - record.start_weight, sample);
   add_motion(particles, record, sample);
   particles.ranks().sum(std::span(sample));
   this->add(std::move(sample));

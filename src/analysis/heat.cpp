@@ -69,6 +69,14 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
     add_edge_forces<D>(record.start.network, record.edge_noise, force);
   add_friction_forces<D>(network, stage.velocity, force, stage.spin);
   add_sliding_friction(network, force);
+  std::vector<Vec<D>> torque;  // about the particles' centres
+  if (!stage.spin.empty()) {
+    torque.resize(force.size());
+    if (!record.edge_noise.empty())
+      add_edge_torques<D>(record.start.network, record.edge_noise, torque);
+    add_friction_torques<D>(network, stage.velocity, stage.spin, torque);
+    add_sliding_torques(network, torque);
+  }
   double walls = 0.0, driven = 0.0, shear = 0.0, rate = 0.0;
   for (std::size_t k = 0; k < network.slip_0.size(); ++k) {
     if (!network.counts(k)) continue;
@@ -86,7 +94,9 @@ void Heat<D>::add_stage(const Particles<D>& particles, const Stage<D>& stage,
     const Vec<D>& v = stage.velocity[i];
     rate -= dot(v, stage.potential_force[i]);
     driven += dot(v, stage.driving_force[i]);
-    if (particles.is_known(i)) walls -= dot(v, force[i] + stage.potential_force[i]);
+    if (!particles.is_known(i)) continue;
+    walls -= dot(v, force[i] + stage.potential_force[i]);
+    if (!torque.empty()) walls -= dot(stage.spin[i], torque[i]);
   }
   std::vector<Vec<D>> velocity = stage.velocity;
   const double on_bodies = body_power(scene_, particles, record, stage, velocity);

@@ -15,9 +15,12 @@ namespace odpd {
 
 template <int D>
 Profile<D>::Profile(ObserverSettings settings, ProfileSettings profile, const Scene<D>& scene)
-    : Observer<D>(std::move(settings), width * index(profile.bins)),
+    : Observer<D>(std::move(settings),
+                  (plain_width + (scene.particles().spin_of_species.empty() ? 0 : 1 + turns)) *
+                      index(profile.bins)),
       profile_(profile),
       scene_(scene),
+      spinning_(!scene.particles().spin_of_species.empty()),
       low_(scene.fluid_low()[profile.axis]),
       high_(scene.fluid_high()[profile.axis]) {}
 
@@ -115,6 +118,11 @@ void Profile<D>::measure(const Clock&, const Particles<D>& particles, const Step
     if (const std::int64_t bin = bin_of(middle); bin >= 0) {
       sample[column(index(bin), 0)] += 1.0;
       for (int c = 0; c < D; ++c) sample[column(index(bin), index(c) + 1)] += velocity[c];
+      if (!record.w_mid.empty() && particles.spins(i)) {
+        sample[column(index(bin), plain_width)] += 1.0;
+        for (std::size_t c = 0; c < turns; ++c)
+          sample[column(index(bin), plain_width + 1 + c)] += record.w_mid[i].x[c];
+      }
     }
     if (const std::int64_t bin = bin_of(record.start.position[i]); bin >= 0) {
       sample[column(index(bin), D + 1)] += force_squared[i];
@@ -153,7 +161,57 @@ Table Profile<D>::table() const {
     }
     t.rows.push_back(std::move(row));
   }
+  if (spinning_) add_spin_columns(t);
   return t;
+}
+
+template <int D>
+void Profile<D>::add_spin_columns(Table& t) const {
+  const BlockAverage& average = this->average();
+  for (std::size_t c = 0; c < turns; ++c) {
+    const std::string name = fmt::format("w_{}", D == 2 ? 'z' : "xyz"[c]);
+    t.columns.insert(t.columns.end(), {name, name + "_error"});
+    for (std::size_t b = 0; b < t.rows.size(); ++b) {
+      const std::size_t sum = column(b, plain_width + 1 + c), count = column(b, plain_width);
+      const std::vector<BlockAverage::RatioTerm> term{{1.0, sum, count}};
+      t.rows[b].insert(t.rows[b].end(), {average.ratio(sum, count), average.ratio_error(term)});
+    }
+  }
+}
+
+// The component about the axis that the profile's component of the velocity turns particles about.
+template <int D>
+void Profile<D>::add_spin_chart(const Table& t, Results& results) const {
+  if (profile_.component == profile_.axis) return;
+  // Half the curl of g v, with v a function of x: 1/2 e_axis x e_component dv/dx.
+  Vec<D> axis{}, component{};
+  axis[profile_.axis] = component[profile_.component] = 1.0;
+  const Vec<D> about = torque(axis, component);
+  std::size_t c = 0;
+  while (about.x[c] == 0.0) ++c;
+  const auto w = index(6 + 2 * D) - 1 + 2 * c, v = index(3 + 2 * profile_.component);
+  Chart chart{.title = fmt::format("Angular velocity w_{}", D == 2 ? 'z' : "xyz"[c]),
+              .x_label = fmt::format("{} / r_c", "xyz"[profile_.axis]),
+              .y_label = "w",
+              .curves = {}};
+  Curve spin{.title = "of the particles", .x = {}, .y = {}, .error = {}};
+  Curve curl{.title = "half the curl of the velocity",
+             .x = {},
+             .y = {},
+             .error = {},
+             .line = true,
+             .points = false};
+  for (std::size_t b = 0; b < t.rows.size(); ++b) {
+    spin.x.push_back(t.rows[b][0]);
+    spin.y.push_back(t.rows[b][w]);
+    spin.error.push_back(t.rows[b][w + 1]);
+    if (b == 0 || b + 1 == t.rows.size()) continue;
+    const auto &before = t.rows[b - 1], &after = t.rows[b + 1];
+    curl.x.push_back(t.rows[b][0]);
+    curl.y.push_back(0.5 * about.x[c] * (after[v] - before[v]) / (after[0] - before[0]));
+  }
+  chart.curves = {std::move(spin), std::move(curl)};
+  results.charts.emplace_back(this->settings().name + "_spin", std::move(chart));
 }
 
 template <int D>
@@ -192,6 +250,7 @@ void Profile<D>::add_results(Results& results) const {
   results.tables.emplace_back(name, t);
   results.charts.emplace_back(name + "_velocity", std::move(velocity));
   results.charts.emplace_back(name + "_density", std::move(density));
+  if (spinning_) add_spin_chart(t, results);
 }
 
 // What the fit is a polynomial in, averaged over a bin of this width.

@@ -6,6 +6,7 @@
 #include "odpd/analysis/force_points.h"
 #include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
+#include "odpd/core/rotation.h"
 #include "odpd/operator/edge_sums.h"
 
 namespace odpd {
@@ -75,14 +76,64 @@ std::vector<Vec<D>> peculiar(const Stage<D>& stage, std::vector<Vec<D>> velocity
   return velocity;
 }
 
+// Half the curl of the flow of a sheared box: what particles turn with.
+template <int D>
+Vec<D> flow_spin(const Box<D>& box) {
+  Vec<D> half{};
+  if (!box.shear) return half;
+  Vec<D> flow{}, gradient{};
+  flow[box.shear->flow] = 0.5 * box.sliding / box.size[box.shear->gradient];
+  gradient[box.shear->gradient] = 1.0;
+  return torque(gradient, flow);
+}
+
+template <int D>
+double moment_of(const Particles<D>& particles, std::size_t i) {
+  return particles.spins(i) ? particles.spin_of_species[index(particles.species[i])].moment : 0.0;
+}
+
+// Of the free particles that have a moment of inertia; NaN where velocities are not known.
+template <int D>
+double rotational_temperature(const Particles<D>& particles, const StepRecord<D>& record) {
+  if (record.w_start.empty()) return std::nan("");
+  const Vec<D> mean = flow_spin(record.start.box);
+  const Share own = particles.owned();
+  std::array<double, 2> sum{};  // of I w^2, of components
+  for (std::size_t i = 0; i < record.w_start.size(); ++i) {
+    const double moment = moment_of(particles, i);
+    if (moment == 0.0 || !own.owns(i)) continue;
+    const Vec<D> w = record.w_start[i] - mean;
+    sum[0] += moment * dot(w, w);
+    sum[1] += rotation_components<D>;
+  }
+  own.ranks->sum(std::span(sum));
+  return sum[0] / sum[1];
+}
+
+template <int D>
+bool some_turn(const Scene<D>& scene, bool in_time) {
+  if (!in_time || scene.settings().mass == 0.0) return false;
+  const Particles<D>& particles = scene.particles();
+  for (std::size_t i = 0; i < particles.species.size(); ++i)
+    if (moment_of(particles, i) > 0.0) return true;
+  return false;
+}
+
+std::vector<std::string> thermo_columns(bool turns) {
+  std::vector<std::string> columns{"energy_per_particle", "pressure", "force_squared", "laplacian",
+                                   "kinetic_temperature"};
+  if (turns) columns.push_back("rotational_temperature");
+  return columns;
+}
+
 }  // namespace
 
 template <int D>
 Thermo<D>::Thermo(ObserverSettings settings, const Scene<D>& scene, bool in_time)
-    : Observer<D>(std::move(settings), {"energy_per_particle", "pressure", "force_squared",
-                                        "laplacian", "kinetic_temperature"}),
+    : Observer<D>(std::move(settings), thermo_columns(some_turn(scene, in_time))),
       scene_(scene),
-      in_time_(in_time) {}
+      in_time_(in_time),
+      turns_(some_turn(scene, in_time)) {}
 
 template <int D>
 std::unique_ptr<Observer<D>> Thermo<D>::make(const ObserverEntry<D>& entry) {
@@ -106,11 +157,14 @@ void Thermo<D>::measure(const Clock&, const Particles<D>& particles, const StepR
   const Share own = particles.owned();
   const double centres = own.ranks->sum(centres_inside(particles, points, region));
   const double sum_of_virial = own.ranks->sum(fixed_sum(virial));
-  this->add({(network.energy() + own.ranks->sum(wall_energy)) /
-                 static_cast<double>(particles.moving_count()),
-             (centres * scene_.largest_kT() + sum_of_virial / D) / scene_.fluid_volume(),
-             own.sum(force_squared), own.sum(laplacian),
-             kinetic_temperature(scene_, particles, peculiar(record.start, record.v_start))});
+  std::vector<double> sample{
+      (network.energy() + own.ranks->sum(wall_energy)) /
+          static_cast<double>(particles.moving_count()),
+      (centres * scene_.largest_kT() + sum_of_virial / D) / scene_.fluid_volume(),
+      own.sum(force_squared), own.sum(laplacian),
+      kinetic_temperature(scene_, particles, peculiar(record.start, record.v_start))};
+  if (turns_) sample.push_back(rotational_temperature(particles, record));
+  this->add(std::move(sample));
 }
 
 template <int D>
@@ -134,6 +188,7 @@ void Thermo<D>::add_results(Results& results) const {
   }
   if (scene_.settings().mass > 0.0 && in_time_)
     results.scalars.push_back(this->mean_of(4, prefix + "kinetic_temperature"));
+  if (turns_) results.scalars.push_back(this->mean_of(5, prefix + "rotational_temperature"));
 }
 
 template void configurational_terms<2>(const Scene<2>&, const Particles<2>&, const Stage<2>&,

@@ -39,6 +39,8 @@ Frame scene_frame(const Scene<D>& scene, const Clock& clock, std::span<const dou
       frame.image.push_back(particles.image[i][c]);
       frame.velocity.push_back(particles.velocity[i].x[c]);
     }
+    for (std::size_t c = 0; c < rotation_components<D> && !particles.spin.empty(); ++c)
+      frame.spin.push_back(particles.spin[i].x[c]);
   }
   return frame;
 }

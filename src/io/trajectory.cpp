@@ -94,6 +94,9 @@ void TrajectorySegments::open(const Frame& frame) {
   create_element(*image_, group + "/position", vectors, false);
   create_element(*image_, group + "/image", vectors, true);
   create_element(*image_, group + "/velocity", vectors, false);
+  if (!frame.spin.empty())
+    create_element(*image_, group + "/angular_velocity",
+                   frame.dimension == 2 ? std::vector<std::int64_t>{count} : vectors, false);
   if (!frame.density.empty()) create_element(*image_, group + "/density", {count}, false);
   image_->write(group + "/id", frame.id, {count});
   image_->write(group + "/species", frame.species, {count});
@@ -123,6 +126,7 @@ void TrajectorySegments::append(const Frame& frame) {
   image_->append_row(group + "/position/value", frame.position);
   image_->append_row(group + "/image/value", frame.image);
   image_->append_row(group + "/velocity/value", frame.velocity);
+  if (!frame.spin.empty()) image_->append_row(group + "/angular_velocity/value", frame.spin);
   if (!frame.density.empty()) image_->append_row(group + "/density/value", frame.density);
   image_->append_row(group + "/box/edges/value", edge_vectors(frame));
   ++frames_;
@@ -155,7 +159,10 @@ void TrajectorySegments::reopen(std::int64_t segment, std::int64_t frames) {
   image_ = std::make_unique<H5Image>(file);
   std::vector<const char*> columns{"position/step", "position/time",  "position/value",
                                    "image/value",   "velocity/value", "box/edges/value"};
-  if (H5Reader(file).has(fmt::format("{}/density", all))) columns.push_back("density/value");
+  const H5Reader reader(file);
+  if (reader.has(fmt::format("{}/angular_velocity", all)))
+    columns.push_back("angular_velocity/value");
+  if (reader.has(fmt::format("{}/density", all))) columns.push_back("density/value");
   // A later part may have written more of it.
   for (const char* rows : columns) {
     const std::string path = fmt::format("{}/{}", all, rows);

@@ -25,14 +25,16 @@ void put(Text& text, fmt::format_string<Values...> format, Values&&... values) {
 
 // Arrays a frame does not have are left out.
 
-/// A flat array of vectors, filled up with zeros to the three components VTK wants.
+/// A flat array of vectors, filled up with zeros to the three components VTK wants: behind those given, or before them.
 void put_vectors(Text& text, std::string_view name, const std::vector<double>& values,
-                 std::size_t dimension) {
+                 std::size_t dimension, std::size_t first_given = 0) {
+  if (values.empty()) return;
   put(text, "<DataArray type=\"Float64\" Name=\"{}\" NumberOfComponents=\"3\" format=\"ascii\">\n",
       name);
   for (std::size_t first = 0; first + dimension <= values.size(); first += dimension) {
     for (std::size_t c = 0; c < 3; ++c) {
-      put(text, "{}{}", c < dimension ? values[first + c] : 0.0, c < 2 ? ' ' : '\n');
+      const bool given = c >= first_given && c < first_given + dimension;
+      put(text, "{}{}", given ? values[first + c - first_given] : 0.0, c < 2 ? ' ' : '\n');
     }
   }
   put(text, "</DataArray>\n");
@@ -108,7 +110,9 @@ void write_vtp(const std::filesystem::path& file, const Frame& frame) {
   put(text, "</Points>\n");
   put_vertices(text, count);
   put(text, "<PointData>\n");
-  if (!frame.velocity.empty()) put_vectors(text, "velocity", frame.velocity, dimension);
+  put_vectors(text, "velocity", frame.velocity, dimension);
+  // That of a plane is about z.
+  put_vectors(text, "angular_velocity", frame.spin, dimension == 2 ? 1 : 3, dimension == 2 ? 2 : 0);
   put_numbers(text, "density", frame.density);
   put_integers(text, "id", frame.id);
   put_integers(text, "species", frame.species);

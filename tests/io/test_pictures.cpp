@@ -69,6 +69,20 @@ assert numbers(root.find('PolyData/FieldData/DataArray')) == [0.1]
   }
 }
 
+// In 2D about z, the component out of the plane.
+TEST_P(VtpIn, AngularVelocitiesAreVectors) {
+  const TemporaryDirectory directory;
+  Frame frame = sample_frame(GetParam(), 2, 20);
+  frame.spin = GetParam() == 2 ? std::vector<double>{1.5, -2.5}
+                               : std::vector<double>{1.5, 2.0, 3.0, -2.5, 4.0, 5.0};
+  write_vtp(directory / "frame.vtp", frame);
+  const std::string text = read_file(directory / "frame.vtp");
+  const std::size_t at = text.find("\"angular_velocity\" NumberOfComponents=\"3\"");
+  ASSERT_NE(at, std::string::npos);
+  const std::string values = GetParam() == 2 ? "0 0 1.5\n0 0 -2.5\n" : "1.5 2 3\n-2.5 4 5\n";
+  EXPECT_EQ(text.substr(text.find('\n', at) + 1, values.size()), values);
+}
+
 TEST(Vtp, LeavesOutWhatTheFrameDoesNotHave) {
   const TemporaryDirectory directory;
   Frame frame;

@@ -149,6 +149,29 @@ TEST(Trajectory, GoesOnWithDensities) {
   for (int k = 0; k < 3; ++k) EXPECT_EQ(reader.read_doubles(density, k), frame(k).density);
 }
 
+// One number in 2D, three in 3D; a segment that goes on keeps as many as its frames.
+TEST_P(TrajectoryIn, GoesOnWithAngularVelocities) {
+  const TemporaryDirectory directory;
+  const int components = GetParam() == 2 ? 1 : 3;
+  const auto frame = [&](int step) {
+    Frame with = sample_frame(GetParam(), 4, step);
+    for (int k = 0; k < 4 * components; ++k) with.spin.push_back(0.1 * k + step);
+    return with;
+  };
+  TrajectorySegments part = segments_in(directory);
+  for (const int step : {0, 1, 7}) part.append(frame(step));
+  part.save_segment();
+  TrajectorySegments resumed = segments_in(directory);
+  resumed.reopen(0, 2);
+  resumed.append(frame(2));
+  resumed.close_segment();
+  const H5Reader reader(directory / "trajectory.0000.h5");
+  const std::string spin = "/particles/all/angular_velocity/value";
+  EXPECT_EQ(reader.shape(spin), components == 1 ? (std::vector<std::int64_t>{3, 4})
+                                                : (std::vector<std::int64_t>{3, 4, 3}));
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(reader.read_doubles(spin, k), frame(k).spin);
+}
+
 TEST(Trajectory, IsH5mdToPython) {
   if (!test::python_has("h5py")) GTEST_SKIP() << "h5py is not installed";
   const TemporaryDirectory directory;

@@ -50,9 +50,8 @@ class Bodies : public Observer<D> {
  private:
   static constexpr std::size_t turns = rotation_components<D>;
   static constexpr std::size_t width = 2 * (D + turns);  // columns of a [[body]]
-  void add_stage(const Stage<D>& stage, const std::vector<Vec<D>>& noise,
-                 const std::vector<Vec<D>>& noise_arms, double weight,
-                 std::vector<double>& sample) const;
+  void add_stage(const Stage<D>& stage, const StepRecord<D>& record, const ParticleLoads<D>& noise,
+                 double weight, std::vector<double>& sample) const;
   void add_motion(const Particles<D>& particles, const StepRecord<D>& record,
                   std::vector<double>& sample) const;
   void follow(const Particles<D>& particles);

@@ -4,6 +4,8 @@
 //
 //   density  n_b = <N_b>/V_b,   velocity  u_b = <sum_{i in b} v_i>/<N_b>   with v_mid at the middle of the step's path,
 //   configurational temperature  <sum |F_i|^2>/<sum lap_i U>
+//   angular velocity  w_b = <sum_{i in b} w_i>/<number of them>, of those that spin, like v_mid; beside it in its chart half the curl of
+//            the velocity, by differences of neighbouring bins: what slow flows turn particles with
 //
 // and a least-squares fit of one velocity component over the bins between `fit_from` and `fit_to`:
 //   linear    u = u_0 + slope x; with two walls also slope_ratio = slope H/(U_high - U_low) and the slip length
@@ -16,6 +18,7 @@
 
 #include "odpd/analysis/least_squares.h"
 #include "odpd/analysis/observer.h"
+#include "odpd/core/rotation.h"
 
 namespace odpd {
 
@@ -48,11 +51,16 @@ class Profile : public Observer<D> {
 
  private:
   // Columns of a bin: count, D velocity sums, |F|^2, laplacian.
-  static constexpr std::size_t width = D + 3;
-  std::size_t column(std::size_t bin, std::size_t k) const { return bin * width + k; }
+  static constexpr std::size_t plain_width = D + 3;
+  // Where somebody spins, behind those: count, sums of angular velocities.
+  static constexpr std::size_t turns = rotation_components<D>;
+  std::size_t width() const { return plain_width + (spinning_ ? 1 + turns : 0); }
+  std::size_t column(std::size_t bin, std::size_t k) const { return bin * width() + k; }
   std::int64_t bin_of(const Vec<D>& r) const;
   double centre(std::size_t bin) const;
   Table table() const;
+  void add_spin_columns(Table& t) const;
+  void add_spin_chart(const Table& t, Results& results) const;
   // The fit over its bins, and the column pairs whose ratios it is linear in; NaN without errors to weigh them by.
   struct FittedBins {
     bool found = false;
@@ -77,6 +85,7 @@ class Profile : public Observer<D> {
 
   ProfileSettings profile_;
   const Scene<D>& scene_;
+  bool spinning_;
   double low_, high_;
 };
 

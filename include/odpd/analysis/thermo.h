@@ -14,6 +14,9 @@
 //   kinetic temperature      with mass only: m sum |v - V|^2 / (d (N_f - c)) over the N_f free particles, with v at the step's
 //                            start, of variance kT/m; V the mean velocity and c = 1 where momentum is conserved, else 0; under flow
 //                            the flow's own kinetic energy is in it
+//   rotational               where free particles with a moment of inertia I spin: sum I |w - W|^2 over them and their components
+//   temperature              (one in 2D, three in 3D), with w at the step's start, of variance kT/I; W that of a sheared box, half the
+//                            curl of its flow, else 0. Momentum of spins alone is not conserved
 #include "odpd/analysis/observer.h"
 
 namespace odpd {
@@ -31,6 +34,7 @@ class Thermo : public Observer<D> {
  private:
   const Scene<D>& scene_;
   bool in_time_;
+  bool turns_;  // somebody has a rotational temperature
 };
 
 /// Kinetic temperature of these velocities, one per particle (0 without mass).

@@ -21,7 +21,9 @@ struct Frame {
   std::vector<double> position;       ///< inside the box
   std::vector<std::int64_t> image;    ///< unwrapped = position + image * box_size
   std::vector<double> velocity;       ///< stage-mean velocity v_mid of the last step
-  std::vector<double> density;        ///< of pairs/densities.h; empty where the model has none
+  std::vector<double>
+      spin;  ///< angular velocity of the last step, one number each in 2D, three in 3D; empty where nobody spins
+  std::vector<double> density;  ///< of pairs/densities.h; empty where the model has none
   std::vector<std::string> species_names;
   std::vector<std::int64_t> bonds;  ///< ids i, j of each bond, flat; the same in all frames
 };

@@ -10,7 +10,7 @@
 
 namespace odpd {
 
-/// One frame: points, velocity, density where it has that, id, species, group, through write_file_atomically.
+/// One frame: points, velocity, angular velocity and density where it has them, id, species, group, through write_file_atomically.
 void write_vtp(const std::filesystem::path& file, const Frame& frame);
 /// The collection: (time, file name relative to it) per frame.
 void write_pvd(const std::filesystem::path& file,
