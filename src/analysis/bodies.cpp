@@ -251,7 +251,7 @@ void Bodies<D>::add_growth(const Particles<D>& particles, const StepRecord<D>& r
         std::vector<Vec<D>> force(record.v_mid.size());
         for (const std::int32_t p : members_[b]) force[index(p)][c] = share;
         const ForceAnswer<D> answer =
-            answer_to_force(particles, record, force, 0.0, bodies_.control.tolerance);
+            answer_to_force<D>(particles, record, {force}, 0.0, bodies_.control.tolerance);
         made.push_back(record.dt * answer.noise);
         response.push_back(answer.mobility);
       }

@@ -22,32 +22,42 @@ std::array<double, 2> work_of(const StepRecord<D>& record, const Slip& slip_of) 
   return sums;
 }
 
+// Of the loads on particles of this rank.
+template <int D>
+double work_done(const ParticleLoads<D>& loads, const ParticleMotions<D>& motions,
+                 const Share& own) {
+  double work = 0.0;
+  for (auto i = index(own.first); i < index(own.end(std::ssize(motions.velocity))); ++i) {
+    work += dot(loads.force[i], motions.velocity[i]);
+    if (!loads.torque.empty() && !motions.spin.empty())
+      work += dot(loads.torque[i], motions.spin[i]);
+  }
+  return work;
+}
+
 }  // namespace
 
 template <int D>
 ForceAnswer<D> answer_to_force(const Particles<D>& particles, const StepRecord<D>& record,
-                               const std::vector<Vec<D>>& force, double zeta_0, double tolerance,
+                               const ParticleLoads<D>& loads, double zeta_0, double tolerance,
                                const FrozenPressure<D>* pressure) {
   const PairNetwork<D>& network = record.start.network;
   ForceAnswer<D> answer;
-  answer.velocity = record.respond({force}, tolerance).velocity;
-  std::vector<Vec<D>>& w = answer.velocity;
+  static_cast<ParticleMotions<D>&>(answer) = record.respond(loads, tolerance);
+  const std::vector<Vec<D>>&w = answer.velocity, &spin = answer.spin;
   const Share own = particles.owned();
   double of_rates = 0.0;
   if (pressure != nullptr) {
-    double plain = 0.0;
-    for (auto i = index(own.first); i < index(own.end(std::ssize(w))); ++i)
-      plain += dot(force[i], w[i]);
-    std::vector<double> rates = pressure->rates_of(w);
-    of_rates = pressure->hold(rates, w, particles.ranks().sum(plain), tolerance).work;
+    const double plain = particles.ranks().sum(work_done(loads, answer, own));
+    std::vector<double> rates = pressure->rates_of(answer);
+    of_rates = pressure->hold(rates, answer, plain, tolerance).work;
   }
-  const auto [power, noise] = work_of<D>(
-      record, [&](std::size_t k) { return w[index(network.i[k])] - w[index(network.j[k])]; });
-  double along = 0.0, drag = 0.0;
-  for (auto i = index(own.first); i < index(own.end(std::ssize(w))); ++i) {
-    along += dot(force[i], w[i]);
+  const auto [power, noise] =
+      work_of<D>(record, [&](std::size_t k) { return network.inner_slip(k, w, spin); });
+  const double along = work_done(loads, answer, own);
+  double drag = 0.0;
+  for (auto i = index(own.first); i < index(own.end(std::ssize(w))); ++i)
     drag += zeta_0 * dot(w[i], w[i]);
-  }
   std::array<double, 2> sums{2.0 * along - power - drag, noise};
   particles.ranks().sum(std::span(sums));
   answer.mobility = sums[0] - 2.0 * of_rates;
@@ -67,15 +77,21 @@ FlowAnswer answer_to_flow(const Particles<D>& particles, const StepRecord<D>& re
     for (std::size_t c = 0; c < D; ++c) slip.x[c] = dot(E[c], r);
     return slip;
   };
-  std::vector<Vec<D>> friction(index(network.size())), load(record.start.position.size());
+  std::vector<Vec<D>> friction(index(network.size()));
+  ParticleLoads<D> load{std::vector<Vec<D>>(record.start.position.size())};
   for (std::size_t k = 0; k < friction.size(); ++k)
     friction[k] = -1.0 * friction_of<D>(network, k, affine(k));
-  add_edge_forces<D>(network, friction, load);
+  add_edge_forces<D>(network, friction, load.force);
+  if (!network.lever_i.empty()) {
+    load.torque.resize(load.force.size());
+    add_edge_torques<D>(network, friction, load.torque);
+  }
   // u = -w, what the particles move besides the flow.
-  std::vector<Vec<D>> u = record.respond({load}, tolerance).velocity;
-  for (Vec<D>& v : u) v = -1.0 * v;
+  ParticleMotions<D> u = record.respond(load, tolerance);
+  for (Vec<D>& v : u.velocity) v = -1.0 * v;
+  for (Vec<D>& w : u.spin) w = -1.0 * w;
   const auto slip = [&](std::size_t k) {
-    return affine(k) + u[index(network.i[k])] - u[index(network.j[k])];
+    return affine(k) + network.inner_slip(k, u.velocity, u.spin);
   };
   double of_rates = 0.0;
   if (pressure != nullptr) {
@@ -90,11 +106,11 @@ FlowAnswer answer_to_flow(const Particles<D>& particles, const StepRecord<D>& re
   return {.power = sums[0] + 2.0 * of_rates, .noise = sums[1]};
 }
 
-#define ODPD_INSTANTIATE(D)                                                              \
-  template ForceAnswer<D> answer_to_force<D>(const Particles<D>&, const StepRecord<D>&,  \
-                                             const std::vector<Vec<D>>&, double, double, \
-                                             const FrozenPressure<D>*);                  \
-  template FlowAnswer answer_to_flow<D>(const Particles<D>&, const StepRecord<D>&,       \
+#define ODPD_INSTANTIATE(D)                                                             \
+  template ForceAnswer<D> answer_to_force<D>(const Particles<D>&, const StepRecord<D>&, \
+                                             const ParticleLoads<D>&, double, double,   \
+                                             const FrozenPressure<D>*);                 \
+  template FlowAnswer answer_to_flow<D>(const Particles<D>&, const StepRecord<D>&,      \
                                         const Gradient<D>&, double, const FrozenPressure<D>*);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)

@@ -25,13 +25,16 @@ constexpr double too_much = 100.0;
 
 template <int D>
 FrozenPressure<D>::FrozenPressure(const Particles<D>& particles, const StepRecord<D>& record,
-                                  double reach, double spacing, double tolerance)
+                                  const PressureRange& range, double spacing, double tolerance)
     : record_(record), ranks_(particles.ranks()), own_(particles.owned()) {
   const auto n = record.start.position.size();
   free_.resize(n);
-  for (std::size_t i = 0; i < n; ++i) free_[i] = particles.is_free(i) ? 1 : 0;
-  place(particles, spacing);
-  find_tensions(particles, reach, tolerance);
+  const auto colloid = [&](std::size_t i) {
+    return !range.colloid.empty() && range.colloid[index(particles.species[i])] != 0;
+  };
+  for (std::size_t i = 0; i < n; ++i) free_[i] = particles.is_free(i) && !colloid(i) ? 1 : 0;
+  place(spacing);
+  find_tensions(particles, range, tolerance);
   for (auto i = index(own_.first); i < index(own_.end(std::ssize(free_))); ++i)
     around(i, [&](std::size_t g, double h) { diagonal_[g] += weight_[i] * h * h; });
   ranks_.sum(std::span(diagonal_));
@@ -40,7 +43,7 @@ FrozenPressure<D>::FrozenPressure(const Particles<D>& particles, const StepRecor
 
 // Along bounded directions the grid spans the free particles.
 template <int D>
-void FrozenPressure<D>::place(const Particles<D>& particles, double spacing) {
+void FrozenPressure<D>::place(double spacing) {
   const Stage<D>& stage = record_.start;
   Vec<D> origin{}, cell{};
   std::array<std::int32_t, index(D)> last{};
@@ -51,7 +54,7 @@ void FrozenPressure<D>::place(const Particles<D>& particles, double spacing) {
     if (!periodic) {
       std::swap(low, high);
       for (auto i = index(own_.first); i < index(own_.end(std::ssize(free_))); ++i) {
-        if (!particles.is_free(i)) continue;
+        if (free_[i] == 0) continue;
         low = std::min(low, stage.position[i][c]);
         high = std::max(high, stage.position[i][c]);
       }
@@ -80,32 +83,50 @@ void FrozenPressure<D>::place(const Particles<D>& particles, double spacing) {
 }
 
 template <int D>
-void FrozenPressure<D>::find_tensions(const Particles<D>& particles, double reach,
+void FrozenPressure<D>::find_tensions(const Particles<D>& particles, const PressureRange& range,
                                       double tolerance) {
   const PairNetwork<D>& network = record_.start.network;
-  std::vector<Vec<D>> force(free_.size());
+  const std::size_t species = range.colloid.size();
+  const auto reach_of = [&](std::size_t k) {
+    if (range.reaches.empty()) return range.reach;
+    const auto a = index(particles.species[index(network.i[k])]),
+               b = index(particles.species[index(network.j[k])]);
+    return range.reaches[a * species + b];
+  };
   tension_.resize(index(network.size()));
   weight_.resize(free_.size());
   parallel_for(network.pairs(), [&](std::int64_t pair) {
     const auto k = index(pair);
     const int ends = free_[index(network.i[k])] + free_[index(network.j[k])];
+    const double reach = reach_of(k);
     tension_[k] = -2.0 / reach * std::max(0.0, 1.0 - network.r[k] / reach) * ends * network.e[k];
   });
   parallel_for(network.particles, [&](std::int64_t particle) {
     const auto i = index(particle);
-    if (!particles.is_free(i)) return;
+    if (free_[i] == 0) return;
     double sum = 0.0;
     for (const std::int32_t k : network.edges_of(particle))
       sum += network.r[index(k)] * norm(tension_[index(k)]);
     weight_[i] = sum * sum;
   });
-  add_edge_forces<D>(network, tension_, force);
-  const std::vector<Vec<D>> w = record_.respond({force}, tolerance).velocity;
+  const ParticleMotions<D> w = record_.respond(loads_of(tension_), tolerance);
   parallel_for(network.size(), [&](std::int64_t edge) {
     const auto k = index(edge), i = index(network.i[k]), j = index(network.j[k]);
-    tension_[k] += friction_of<D>(network, k, w[i] - w[j]);
+    tension_[k] += friction_of<D>(network, k, network.inner_slip(k, w.velocity, w.spin));
     if (free_[i] == free_[j]) tension_[k] = 0.5 * tension_[k];
   });
+}
+
+template <int D>
+ParticleLoads<D> FrozenPressure<D>::loads_of(const std::vector<Vec<D>>& edge_force) const {
+  const PairNetwork<D>& network = record_.start.network;
+  ParticleLoads<D> loads{std::vector<Vec<D>>(free_.size())};
+  add_edge_forces<D>(network, edge_force, loads.force);
+  if (!network.lever_i.empty()) {
+    loads.torque.resize(free_.size());
+    add_edge_torques<D>(network, edge_force, loads.torque);
+  }
+  return loads;
 }
 
 template <int D>
@@ -162,12 +183,12 @@ std::vector<double> FrozenPressure<D>::rates(const std::vector<Vec<D>>& slips) c
 }
 
 template <int D>
-std::vector<double> FrozenPressure<D>::rates_of(const std::vector<Vec<D>>& velocity) const {
+std::vector<double> FrozenPressure<D>::rates_of(const ParticleMotions<D>& motions) const {
   const PairNetwork<D>& network = record_.start.network;
   std::vector<Vec<D>> slips(index(network.size()));
   parallel_for(std::ssize(slips), [&](std::int64_t edge) {
     const auto k = index(edge);
-    slips[k] = velocity[index(network.i[k])] - velocity[index(network.j[k])];
+    slips[k] = network.inner_slip(k, motions.velocity, motions.spin);
   });
   return rates(slips);
 }
@@ -179,17 +200,16 @@ void FrozenPressure<D>::drop_whole(std::vector<double>& rates) const {
 }
 
 template <int D>
-std::vector<Vec<D>> FrozenPressure<D>::push(std::span<const double> pressure) const {
+ParticleLoads<D> FrozenPressure<D>::push(std::span<const double> pressure) const {
   const PairNetwork<D>& network = record_.start.network;
   const std::vector<double> p = at_particles(pressure);
-  std::vector<Vec<D>> edge_force(index(network.size())), force(p.size());
+  std::vector<Vec<D>> edge_force(index(network.size()));
   parallel_for(std::ssize(edge_force), [&](std::int64_t edge) {
     const auto k = index(edge), i = index(network.i[k]), j = index(network.j[k]);
     const double sum = (has_pressure(i, k) ? p[i] : 0.0) + (has_pressure(j, k) ? p[j] : 0.0);
     edge_force[k] = -sum * tension_[k];
   });
-  add_edge_forces<D>(network, edge_force, force);
-  return force;
+  return loads_of(edge_force);
 }
 
 // By conjugate gradients of their own: sums over particles alone, which cost less than one solve of R.
@@ -222,8 +242,8 @@ std::vector<double> FrozenPressure<D>::preconditioned(const std::vector<double>&
 }
 
 template <int D>
-auto FrozenPressure<D>::hold(std::vector<double>& rates, std::vector<Vec<D>>& velocity,
-                             double value, double tolerance) const -> Held {
+auto FrozenPressure<D>::hold(std::vector<double>& rates, ParticleMotions<D>& motions, double value,
+                             double tolerance) const -> Held {
   Held held{.pressure = std::vector<double>(nodes()), .work = 0.0};
   int solves = 0;
   drop_whole(rates);
@@ -231,7 +251,7 @@ auto FrozenPressure<D>::hold(std::vector<double>& rates, std::vector<Vec<D>>& ve
   double product = fixed_dot(rates, z), gained = 0.0;
   int small = 0;
   while (product > 0.0 && small < 2) {
-    const std::vector<Vec<D>> u = record_.respond({push(direction)}, tolerance).velocity;
+    const ParticleMotions<D> u = record_.respond(push(direction), tolerance);
     ++solves;
     const std::vector<double> change = rates_of(u);
     const double down = fixed_dot(rates, direction);
@@ -243,8 +263,11 @@ auto FrozenPressure<D>::hold(std::vector<double>& rates, std::vector<Vec<D>>& ve
           "load (solve {}): some of its {} free particles cannot give way on a grid of {} nodes, "
           "or solves to {:.3g} are too loose; use a smaller tolerance, or incompressible = false",
           solves, std::count(free_.begin(), free_.end(), 1), nodes(), tolerance));
-    parallel_for(std::ssize(velocity),
-                 [&](std::int64_t i) { velocity[index(i)] += step * u[index(i)]; });
+    const auto add = [&](const std::vector<Vec<D>>& part, std::vector<Vec<D>>& to) {
+      parallel_for(std::ssize(to), [&](std::int64_t i) { to[index(i)] += step * part[index(i)]; });
+    };
+    add(u.velocity, motions.velocity);
+    add(u.spin, motions.spin);
     const std::vector<double> before = rates;
     for (std::size_t g = 0; g < rates.size(); ++g) {
       held.pressure[g] += step * direction[g];
@@ -263,18 +286,40 @@ auto FrozenPressure<D>::hold(std::vector<double>& rates, std::vector<Vec<D>>& ve
 }
 
 template <int D>
+PressureRange pressure_range(const Scene<D>& scene) {
+  PressureRange range{.reach = scene.model().cutoff(), .reaches = {}, .colloid = {}};
+  range.colloid.assign(scene.settings().species.size(), 0);
+  for (const MoleculeSettings<D>& m : scene.settings().molecules)
+    if (m.beads() == 1) range.colloid[index(m.species[0])] = 1;
+  const std::span<const double> reaches = scene.model().reaches();
+  const std::size_t species = range.colloid.size();
+  if (reaches.size() != species * species) return range;
+  std::vector<std::int64_t> count(species, 0);
+  const Particles<D>& particles = scene.particles();
+  for (std::size_t i = 0; i < particles.species.size(); ++i)
+    if (particles.is_free(i)) ++count[index(particles.species[i])];
+  for (std::size_t s = 0; s < species; ++s)
+    if (range.colloid[s] != 0) count[s] = 0;
+  const auto fluid = index(std::max_element(count.begin(), count.end()) - count.begin());
+  range.reach = reaches[fluid * species + fluid];
+  range.reaches = reaches;
+  return range;
+}
+
+template <int D>
 std::optional<FrozenPressure<D>> pressure_on(const Particles<D>& particles,
                                              const StepRecord<D>& record, const Scene<D>& scene,
                                              bool wanted, double tolerance) {
   if (!wanted) return {};
-  const double reach = scene.model().cutoff();
-  return std::optional<FrozenPressure<D>>(std::in_place, particles, record, reach,
-                                          pressure_spacing * reach, tolerance);
+  const PressureRange range = pressure_range(scene);
+  return std::optional<FrozenPressure<D>>(std::in_place, particles, record, range,
+                                          pressure_spacing * range.reach, tolerance);
 }
 
-#define ODPD_INSTANTIATE(D)                                 \
-  template class FrozenPressure<D>;                         \
-  template std::optional<FrozenPressure<D>> pressure_on<D>( \
+#define ODPD_INSTANTIATE(D)                                  \
+  template class FrozenPressure<D>;                          \
+  template PressureRange pressure_range<D>(const Scene<D>&); \
+  template std::optional<FrozenPressure<D>> pressure_on<D>(  \
       const Particles<D>&, const StepRecord<D>&, const Scene<D>&, bool, double);
 ODPD_INSTANTIATE(2)
 ODPD_INSTANTIATE(3)

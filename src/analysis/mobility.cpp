@@ -55,23 +55,39 @@ void load_by_force(std::span<const std::int32_t> particles, const Vec<D>& f,
     force[index(p)] += (1.0 / static_cast<double>(particles.size())) * f;
 }
 
-// Forces that are a torque and no net force. False where it is about the line of a rod, and nothing.
+double sign(double uniform) { return uniform < 0.5 ? -1.0 : 1.0; }
+
 template <int D>
-bool load_by_torque(std::span<const std::int32_t> particles, std::span<const Vec<D>> arms,
-                    const Vec<D>& t, std::vector<Vec<D>>& force) {
+ParticleLoads<D> no_loads(std::size_t particles) {
+  return {std::vector<Vec<D>>(particles), std::vector<Vec<D>>(particles)};
+}
+
+}  // namespace
+
+template <int D>
+int Mobility<D>::Mover::rotations() const {
+  return spins ? rotation_components<D> : odpd::rotations<D>(std::span<const Vec<D>>(arms));
+}
+
+// Forces that are a torque and no net force, but on a particle that spins.
+template <int D>
+bool Mobility<D>::Mover::load_by_torque(const Vec<D>& t, ParticleLoads<D>& loads) const {
+  if (spins) {
+    // In 2D the second component is nobody's.
+    for (int c = 0; c < rotation_components<D>; ++c) loads.torque[index(particles[0])][c] += t[c];
+    return true;
+  }
   const Vec<D> spin = angular_velocity<D>(arms, t);
   double size = 0.0;
   for (const Vec<D>& a : arms) size += dot(a, a);
-  for (std::size_t k = 0; k < arms.size(); ++k) force[index(particles[k])] += swing(spin, arms[k]);
+  for (std::size_t k = 0; k < arms.size(); ++k)
+    loads.force[index(particles[k])] += swing(spin, arms[k]);
   return norm(spin) * size > least_moment * norm(t);
 }
 
-double sign(double uniform) { return uniform < 0.5 ? -1.0 : 1.0; }
-
-// Of each [[body]], how much of a force on all its sites take, with 1 for a particle of the fluid. Empty where the volume of one of
-// them is not given, or something holds the fluid.
+// Nothing where the volume of a body is not given, or something holds the fluid.
 template <int D>
-std::vector<double> weights_of_sites(const Scene<D>& scene) {
+auto Mobility<D>::weights_of_kinds(const Scene<D>& scene) -> Weights {
   const SceneSettings<D>& s = scene.settings();
   double sites = 0.0, excluded = 0.0;
   for (const BodySettings<D>& b : s.bodies) {
@@ -79,23 +95,29 @@ std::vector<double> weights_of_sites(const Scene<D>& scene) {
     sites += static_cast<double>(b.particles());
     excluded += static_cast<double>(b.bodies()) * b.excluded_volume;
   }
-  if (s.bodies.empty() || !scene.conserves_momentum()) return {};
+  for (const MoleculeSettings<D>& m : s.molecules) {
+    if (m.excluded_volume <= 0.0) continue;
+    sites += static_cast<double>(m.molecules() * m.beads());
+    excluded += static_cast<double>(m.molecules()) * m.excluded_volume;
+  }
+  if (excluded == 0.0 || !scene.conserves_momentum()) return {};
   const double n =
       (static_cast<double>(scene.particles().size()) - sites) / (s.fluid_volume() - excluded);
-  std::vector<double> weights;
+  Weights weights;
   for (const BodySettings<D>& b : s.bodies)
-    weights.push_back(n * b.excluded_volume / static_cast<double>(b.shape.size()));
+    weights.site.push_back(n * b.excluded_volume / static_cast<double>(b.shape.size()));
+  for (const MoleculeSettings<D>& m : s.molecules)
+    weights.bead.push_back(
+        m.excluded_volume > 0.0 ? n * m.excluded_volume / static_cast<double>(m.beads()) : 1.0);
   return weights;
 }
-
-}  // namespace
 
 template <int D>
 Mobility<D>::Mobility(ObserverSettings settings, MobilitySettings mobility, const Scene<D>& scene)
     : Observer<D>(std::move(settings), mobility_columns(mobility, scene)),
       mobility_(std::move(mobility)),
       scene_(scene),
-      site_weight_(weights_of_sites(scene)),
+      kind_weight_(weights_of_kinds(scene)),
       beads_(scene),
       random_(scene.settings().seed, Stream::loads) {}
 
@@ -210,6 +232,7 @@ auto Mobility<D>::movers(const Step& step) const -> std::vector<std::vector<Move
         mover.arms[k] -= centre;
         mover.particles.push_back(index_of[index(m.first) + k]);
       }
+      mover.spins = mover.particles.size() == 1 && step.particles.spins(index(mover.particles[0]));
       movers.back().push_back(std::move(mover));
     }
   }
@@ -233,13 +256,18 @@ std::vector<double> Mobility<D>::weights(const Particles<D>& particles) const {
   std::vector<double> weight(particles.size(), 1.0);
   for (std::size_t i = 0; i < weight.size(); ++i)
     if (const std::int32_t b = particles.body_of(i); b >= 0)
-      weight[i] = site_weight_[scene_.body_kind(index(b))];
+      weight[i] = kind_weight_.site[scene_.body_kind(index(b))];
+  const std::vector<std::int32_t> index_of = particles.index_of_id();
+  for (const Molecule& m : scene_.molecules())
+    for (std::int64_t k = 0; k < scene_.settings().molecules[m.kind].beads(); ++k)
+      weight[index(index_of[index(m.first + k)])] = kind_weight_.bead[m.kind];
   return weight;
 }
 
 template <int D>
-double Mobility<D>::answer(const Step& step, std::vector<Vec<D>> force) const {
-  if (!site_weight_.empty()) {
+double Mobility<D>::answer(const Step& step, ParticleLoads<D> loads) const {
+  std::vector<Vec<D>>& force = loads.force;
+  if (!kind_weight_.site.empty() || !kind_weight_.bead.empty()) {
     const std::vector<double> weight = weights(step.particles);
     const Share own = step.particles.owned();
     std::array<double, D + 1> sums{};
@@ -251,7 +279,7 @@ double Mobility<D>::answer(const Step& step, std::vector<Vec<D>> force) const {
     for (std::size_t i = 0; i < force.size(); ++i)
       for (int c = 0; c < D; ++c) force[i][c] -= weight[i] * sums[index(c)] / sums[D];
   }
-  return answer_to_force(step.particles, step.record, force, scene_.settings().zeta_0,
+  return answer_to_force(step.particles, step.record, loads, scene_.settings().zeta_0,
                          mobility_.tolerance, step.pressure)
       .mobility;
 }
@@ -266,24 +294,23 @@ auto Mobility<D>::to_unit_loads(const Step& step, const std::vector<Mover>& move
   double axes = 0.0;
   for (const Mover& mover : movers) {
     for (int c = 0; c < D; ++c) {
-      std::vector<Vec<D>> force(step.record.v_mid.size());
-      load_by_force(std::span(mover.particles), mover.axes.turn(unit_vector<D>(c)), force);
-      const double mobility = answer(step, force);
+      ParticleLoads<D> loads = no_loads<D>(step.record.v_mid.size());
+      load_by_force(std::span(mover.particles), mover.axes.turn(unit_vector<D>(c)), loads.force);
+      const double mobility = answer(step, loads);
       means.components[index(c)] += share * mobility;
       means.translation += share / D * mobility;
     }
-    const int own = rotations<D>(std::span<const Vec<D>>(mover.arms));
+    const int own = mover.rotations();
     axes += own;
     for (int c = 0; c < turns; ++c) {
-      std::vector<Vec<D>> force(step.record.v_mid.size());
+      ParticleLoads<D> loads = no_loads<D>(step.record.v_mid.size());
       double& component = means.components[index(D + c)];
-      if (own == 0 ||
-          !load_by_torque<D>(mover.particles, mover.arms, turning_axis(mover.axes, c), force)) {
+      if (own == 0 || !mover.load_by_torque(turning_axis(mover.axes, c), loads)) {
         // About its line a rod does not turn: e . mu e is 0 where e comes to lie along it, and of its own axis there is none.
         if (own == 0 || mobility_.own_axes) component = std::nan("");
         continue;
       }
-      const double mobility = answer(step, force);
+      const double mobility = answer(step, loads);
       component += share * mobility;
       means.rotation += mobility;
     }
@@ -295,7 +322,8 @@ auto Mobility<D>::to_unit_loads(const Step& step, const std::vector<Mover>& move
 template <int D>
 auto Mobility<D>::to_random_loads(const Step& step, const std::vector<Mover>& movers) const
     -> Answers {
-  std::vector<Vec<D>> forces(step.record.v_mid.size()), torques(forces.size());
+  const std::size_t n = step.record.v_mid.size();
+  ParticleLoads<D> forces = no_loads<D>(n), torques = no_loads<D>(n);
   double axes = 0.0;
   const auto signs = [&](std::uint64_t use, const Mover& mover) {
     const auto u =
@@ -305,10 +333,10 @@ auto Mobility<D>::to_random_loads(const Step& step, const std::vector<Mover>& mo
     return z;
   };
   for (const Mover& mover : movers) {
-    load_by_force(std::span(mover.particles), signs(1, mover), forces);
-    const int own = rotations<D>(std::span<const Vec<D>>(mover.arms));
+    load_by_force(std::span(mover.particles), signs(1, mover), forces.force);
+    const int own = mover.rotations();
     axes += own;
-    if (own > 0) load_by_torque<D>(mover.particles, mover.arms, signs(2, mover), torques);
+    if (own > 0) mover.load_by_torque(signs(2, mover), torques);
   }
   return {.translation = answer(step, forces) / static_cast<double>(D * movers.size()),
           .rotation = axes > 0.0 ? answer(step, torques) / axes : std::nan(""),
@@ -319,10 +347,10 @@ template <int D>
 double Mobility<D>::to_one_force_on_all(const Step& step, const std::vector<Mover>& movers) const {
   double sum = 0.0;
   for (int c = 0; c < D; ++c) {
-    std::vector<Vec<D>> force(step.record.v_mid.size());
+    ParticleLoads<D> loads = no_loads<D>(step.record.v_mid.size());
     for (const Mover& mover : movers)
-      load_by_force(std::span(mover.particles), unit_vector<D>(c), force);
-    sum += answer(step, force);
+      load_by_force(std::span(mover.particles), unit_vector<D>(c), loads.force);
+    sum += answer(step, loads);
   }
   return sum / static_cast<double>(D * movers.size());
 }

@@ -95,8 +95,8 @@ template <int D>
 void Modes<D>::solve_modes(const Particles<D>& particles, const StepRecord<D>& record,
                            std::vector<double>& made, std::vector<double>& response) const {
   for (const auto& mode : waves_.modes()) {
-    const ForceAnswer<D> answer = answer_to_force(
-        particles, record, waves_.shape(mode, record.start.position), 0.0, control_tolerance_);
+    const ForceAnswer<D> answer = answer_to_force<D>(
+        particles, record, {waves_.shape(mode, record.start.position)}, 0.0, control_tolerance_);
     made.push_back(dt_ * answer.noise);
     response.push_back(answer.mobility);
   }

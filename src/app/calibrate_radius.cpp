@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "odpd/analysis/frozen_pressure.h"
 #include "odpd/app/interrupt.h"
@@ -81,20 +82,7 @@ class RadiusCalibrator {
 
   /// False where it ended early.
   bool measure() {
-    const MeasuredBody& body = record_.body;
-    // Of the radius, eta may have this part of the error, the mean over the boxes the rest.
-    constexpr double of_eta = 0.4, of_boxes = 0.85;
-    const auto known = [&](const PureFluid& f) {
-      return f.samples >= least_samples &&
-             f.eta.error <= of_eta * record_.relative_error * f.eta.value;
-    };
-    if (!known(record_.fluid)) {
-      log_info("measuring the fluid alone");
-      // What is there already stays until there is better.
-      const PureFluid fluid = measure_pure_fluid(body, options_.threads, known, stopped_);
-      if (!known(fluid)) return false;
-      record_.fluid = fluid;
-    }
+    if (!measure_fluid()) return false;
     fmt::print("  fluid alone at density {:.5g}: eta = {}\n", record_.fluid.density.value,
                with_error(record_.fluid.eta.value, record_.fluid.eta.error));
     fmt::print("  {:>8} {:>9} {:>18} {:>18} {:>18} {:>18} {:>18} {:>8}\n", "edge", "particles",
@@ -111,7 +99,42 @@ class RadiusCalibrator {
     return true;
   }
 
+  /// The radius by drag in the smallest box; nothing where it ended early. NaN where the series has none.
+  std::optional<Measured> measure_once() {
+    if (!measure_fluid()) return {};
+    bool complete = false;
+    const auto known = [&](const BodyInCell& c) {
+      const Measured a = record_.drag(c);
+      complete = c.samples >= least_samples &&
+                 (a.error <= of_boxes * record_.relative_error * a.value || std::isnan(a.value));
+      return complete;
+    };
+    const BodyInCell cell = measure_body(record_.body, record_.edges.front(), first_guess(),
+                                         options_.threads, known, stopped_);
+    if (!complete) return {};
+    return record_.drag(cell);
+  }
+
  private:
+  // Of the radius, eta may have this part of the error, the mean over the boxes the rest.
+  static constexpr double of_eta = 0.4, of_boxes = 0.85;
+
+  bool measure_fluid() {
+    const MeasuredBody& body = record_.body;
+    const auto known = [&](const PureFluid& f) {
+      return f.samples >= least_samples &&
+             f.eta.error <= of_eta * record_.relative_error * f.eta.value;
+    };
+    if (!known(record_.fluid)) {
+      log_info("measuring the fluid alone");
+      // What is there already stays until there is better.
+      const PureFluid fluid = measure_pure_fluid(body, options_.threads, known, stopped_);
+      if (!known(fluid)) return false;
+      record_.fluid = fluid;
+    }
+    return true;
+  }
+
   // v_ex. Fluid keeps some half of a spacing away from sites; of long bodies some configurations tell.
   double first_guess() const {
     const MeasuredBody& body = record_.body;
@@ -164,6 +187,65 @@ class RadiusCalibrator {
   EarlyEnd stopped_;
 };
 
+RadiusRecord read_record(const CalibrateRadiusOptions& options) {
+  const Config config = open_case(options.case_path, options.overrides);
+  const CaseSettings settings = read_case(config, case_name(options.case_path));
+  return settings.dimension == 2 ? read_body_record<2>(options, config, settings)
+                                 : read_body_record<3>(options, config, settings);
+}
+
+// Which [[pair]] is that of the fluid with the body that is measured.
+std::size_t pair_with_fluid(const CalibrateRadiusOptions& options, const Config& config,
+                            const MeasuredBody& body) {
+  const auto pairs = config.tables("pair");
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const std::vector<std::string> ends = pairs[k].texts("species");
+    if (std::count(ends.begin(), ends.end(), body.own_species) == 1) return k;
+  }
+  config.fail("pair",
+              fmt::format("--find {}: there is no [[pair]] of '{}' with the fluid: give one",
+                          options.find, body.own_species));
+}
+
+// By secants: the first step is as if a cutoff or core were the radius but for a constant, a friction in proportion. Nothing where
+// it ended early.
+std::optional<std::string> find_value(const CalibrateRadiusOptions& options) {
+  RadiusRecord record = read_record(options);
+  const Config config = open_case(options.case_path, options.overrides);
+  const std::size_t pair = pair_with_fluid(options, config, record.body);
+  const std::string path = fmt::format("pair.{}.{}", pair, options.find);
+  const bool length = options.find != "gamma";
+  double x = config.tables("pair")[pair].positive(options.find), last_x = 0.0, last_radius = 0.0;
+  constexpr int most_trials = 8;
+  for (int trial = 0; trial < most_trials; ++trial) {
+    CalibrateRadiusOptions with = options;
+    with.overrides.push_back(fmt::format("{}={}", path, x));
+    RadiusRecord here = read_record(with);
+    here.fluid = record.fluid;
+    const auto measured = RadiusCalibrator(with, here, {}).measure_once();
+    if (!measured) return {};
+    record.fluid = here.fluid;
+    const double radius = measured->value;
+    fmt::print("  {} = {:<10.6g} radius by drag {}\n", path, x,
+               with_error(radius, measured->error));
+    std::fflush(stdout);
+    if (std::isnan(radius)) break;
+    if (std::abs(radius - options.wanted) <= 0.5 * record.relative_error * options.wanted)
+      return with.overrides.back();
+    double slope = length ? 1.0 : radius / x;
+    if (trial > 0) slope = (radius - last_radius) / (x - last_x);
+    // Noise, or a friction so large that it no longer matters.
+    if (!(slope > (length ? 0.2 : 1e-3 * radius / x))) break;
+    last_x = x;
+    last_radius = radius;
+    x = std::clamp(x + (options.wanted - radius) / slope, 0.4 * x, 2.5 * x);
+  }
+  config.tables("pair")[pair].fail(
+      options.find, fmt::format("no value was found that gives {} a radius of {}: choose another "
+                                "key for --find, or another core or friction",
+                                record.body.name, options.wanted));
+}
+
 std::string conclusion(const RadiusRecord& r) {
   const auto text = [](const Measured& m) { return with_error(m.value, m.error); };
   const Measured a = r.radius(), line = r.at_infinity(), v = r.excluded();
@@ -189,26 +271,35 @@ std::string conclusion(const RadiusRecord& r) {
         "the radius depends on the box: take larger ones (--boxes), as at a few cutoffs a fluid "
         "has another viscosity than on long ways (docs/generalised-hydrodynamics.md)");
   out += fmt::format(
-      "\n[[body]]\nname = \"{}\"\n# measured at density {}, eta = {}\nhydrodynamic_radius = {:.5g}"
+      "\n[[{}]]\nname = \"{}\"\n# measured at density {}, eta = {}\nhydrodynamic_radius = {:.5g}"
       "   # +- {:.2g}\nexcluded_volume = {:.5g}   # +- {:.2g}\n",
-      r.body.name, r.body.density, text(r.fluid.eta), a.value, a.error, v.value, v.error);
+      r.body.entry, r.body.name, r.body.density, text(r.fluid.eta), a.value, a.error, v.value,
+      v.error);
   return out;
 }
 
 }  // namespace
 
 int calibrate_radius(const CalibrateRadiusOptions& options) {
-  const Config config = open_case(options.case_path, options.overrides);
-  const std::string name = case_name(options.case_path);
-  const CaseSettings settings = read_case(config, name);
-  RadiusRecord record = settings.dimension == 2 ? read_body_record<2>(options, config, settings)
-                                                : read_body_record<3>(options, config, settings);
-  const fs::path directory =
-      options.out.empty() ? fs::path("runs") / (name + "-radius") : options.out;
+  if (!options.find.empty()) {
+    catch_signals();
+    const std::optional<std::string> found = find_value(options);
+    if (!found && interrupted()) return 130;
+    if (!found) throw Error("--limit-seconds is over before a value is found", 4);
+    CalibrateRadiusOptions with = options;
+    with.find.clear();
+    with.overrides.push_back(*found);
+    fmt::print("Found --set {}\n", *found);
+    return calibrate_radius(with);
+  }
+  RadiusRecord record = read_record(options);
+  const fs::path directory = options.out.empty()
+                                 ? fs::path("runs") / (case_name(options.case_path) + "-radius")
+                                 : options.out;
   const RunLock lock = prepare_radius_directory(directory, record);
   catch_signals();
   fmt::print("One {} of {} particles, in periodic {} at density {:.5g}, dt = {:.4g}\n",
-             record.body.name, record.body.sites, settings.dimension == 2 ? "squares" : "cubes",
+             record.body.name, record.body.sites, record.body.dimension == 2 ? "squares" : "cubes",
              record.body.density, record.body.dt);
   const bool done = RadiusCalibrator(options, record, directory).measure();
   if (done) write_radius(directory, record, true);

@@ -128,7 +128,8 @@ CLI::App* add_study(CLI::App& app, odpd::StudyOptions& study, bool& quiet) {
 struct CalibrateCommand {
   odpd::CalibrateOptions viscosity;
   CLI::Option* radius = nullptr;  // given: of a body, in place of a viscosity
-  std::string body;
+  std::string body, find;
+  double wanted = 0.0;
   std::vector<double> edges;
 
   int run() const {
@@ -137,6 +138,8 @@ struct CalibrateCommand {
                                    .out = viscosity.out,
                                    .overrides = viscosity.overrides,
                                    .body = body,
+                                   .find = find,
+                                   .wanted = wanted,
                                    .edges = edges,
                                    .relative_error = viscosity.relative_error,
                                    .limit_seconds = viscosity.limit_seconds,
@@ -176,8 +179,8 @@ CLI::App* add_calibrate(CLI::App& app, CalibrateCommand& options, bool& quiet) {
       command
           ->add_option(
               "--radius", options.body,
-              "after the case: measure how large the free [[body]] of this name is to a flow "
-              "and to the fluid's particles [the only one]")
+              "after the case: measure how large the free [[body]], or the [[molecule]] of one "
+              "particle, of this name is to a flow and to the fluid's particles [the only one]")
           ->expected(0, 1);
   for (CLI::Option* other : {eta, rate, particles, only}) options.radius->excludes(other);
   command
@@ -186,6 +189,18 @@ CLI::App* add_calibrate(CLI::App& app, CalibrateCommand& options, bool& quiet) {
       ->delimiter(',')
       ->check(positive)
       ->needs(options.radius);
+  CLI::Option* wanted = command
+                            ->add_option("--wanted", options.wanted,
+                                         "with --find: the hydrodynamic radius it is to give")
+                            ->check(positive);
+  CLI::Option* find = command
+                          ->add_option("--find", options.find,
+                                       "with --radius: key of its [[pair]] with the fluid to be "
+                                       "found, cutoff, core or gamma")
+                          ->check(CLI::IsMember({"cutoff", "core", "gamma"}))
+                          ->needs(options.radius)
+                          ->needs(wanted);
+  wanted->needs(find);
   command->add_option(
       "--out", calibrate.out,
       "output directory [runs/<case>-calibrate, -radius]; measurements of the same that are there "

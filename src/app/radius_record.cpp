@@ -55,8 +55,8 @@ Table radius_table(const RadiusRecord& r) {
 std::string inputs_of(const MeasuredBody& b) {
   return fmt::format(
       "dimension = {}\nseed = {}\ndt = {}\ndensity = {}\npressure_spacing = {}\n[fluid]\n{}{}"
-      "[[body]]\n{}",
-      b.dimension, b.seed, b.dt, b.density, pressure_spacing, b.fluid, b.species, b.body);
+      "[[{}]]\n{}",
+      b.dimension, b.seed, b.dt, b.density, pressure_spacing, b.fluid, b.species, b.entry, b.body);
 }
 
 }  // namespace

@@ -48,11 +48,21 @@ std::string species_text(const std::vector<SpeciesSettings>& species) {
   for (const SpeciesSettings& s : species) counted += std::max(0.0, static_cast<double>(s.count));
   for (const SpeciesSettings& s : species)
     text += fmt::format("[[species]]\nname = \"{}\"\n", s.name) +
+            (s.lever_radius > 0.0 ? fmt::format("lever_radius = {}\n", s.lever_radius) : "") +
             (s.count == 0  ? "count = 0\n"
              : s.count > 0 ? fmt::format("fraction = {}\n", static_cast<double>(s.count) / counted)
              : s.fraction < 1.0 ? fmt::format("fraction = {}\n", s.fraction)
                                 : "");
   return species.size() > 1 ? text : std::string{};
+}
+
+// Keys of [fluid] that friction across lines of centres needs.
+std::string lines_of_spin(const ConfigValues& fluid) {
+  std::string lines;
+  for (const auto& [key, value] : fluid)
+    if (key == "lever_radius" || key == "antisymmetric_stress")
+      lines += fmt::format("{} = {}\n", key, value);
+  return lines;
 }
 
 template <int D>
@@ -61,32 +71,46 @@ std::string fluid_lines(const Config& portable, const SceneSettings<D>& s, const
   if (const DpdFluid* dpd = dpd_fluid(*s.model))
     return calibrated_dpd(dpd->p, D, m.density)->keys() +
            fmt::format("gamma = {}\ngamma_perp = {}\n", dpd->p.gamma, dpd->p.gamma_perp) +
-           (portable.table("fluid").has("antisymmetric_stress") ? "antisymmetric_stress = true\n"
-                                                                : "");
+           lines_of_spin(portable.values("fluid"));
   const std::string lines =
       lines_of(portable.values("fluid"), {"density", "count", "reference_density", "mass", "rho",
                                           "zeta_0", "zeta_0_under_flow", "calibration"});
   return m.fills_space ? lines + fmt::format("reference_density = {}\n", m.density) : lines;
 }
 
-template <int D>
-std::size_t index_of_body(const Config& config, const std::vector<BodySettings<D>>& bodies,
-                          const std::string& name) {
-  std::vector<std::string> free;
-  for (const BodySettings<D>& b : bodies)
-    if (b.motion == BodyMotion::free) free.push_back(b.name);
-  if (free.empty())
-    config.fail("body", "--radius measures the drag of a free body, and there is none here");
-  if (name.empty() && free.size() > 1)
-    config.fail("body", fmt::format("say which one, as --radius {}: {} are free", free.front(),
-                                    fmt::join(free, ", ")));
-  const std::string& wanted = name.empty() ? free.front() : name;
-  if (std::find(free.begin(), free.end(), wanted) == free.end())
-    config.fail("body", fmt::format("--radius {}: there is no free [[body]] of that name, but {}",
-                                    wanted, fmt::join(free, ", ")));
+// Which [[body]], or which [[molecule]] of one particle.
+struct Chosen {
+  bool molecule = false;
   std::size_t at = 0;
-  while (bodies[at].name != wanted) ++at;
-  return at;
+};
+
+template <int D>
+Chosen choose_body(const Config& config, const SceneSettings<D>& s, const std::string& name) {
+  std::vector<std::string> names;
+  std::vector<Chosen> free;
+  for (std::size_t k = 0; k < s.bodies.size(); ++k) {
+    if (s.bodies[k].motion != BodyMotion::free) continue;
+    names.push_back(s.bodies[k].name);
+    free.push_back({false, k});
+  }
+  for (std::size_t k = 0; k < s.molecules.size(); ++k) {
+    if (s.molecules[k].beads() > 1) continue;
+    names.push_back(s.molecules[k].name);
+    free.push_back({true, k});
+  }
+  if (free.empty())
+    config.fail("body",
+                "--radius measures the drag of a free body, or of a [[molecule]] of one particle, "
+                "and there is none here");
+  if (name.empty() && free.size() > 1)
+    config.fail("body", fmt::format("say which one, as --radius {}: {} are free", names.front(),
+                                    fmt::join(names, ", ")));
+  const std::string& wanted = name.empty() ? names.front() : name;
+  const auto found = std::find(names.begin(), names.end(), wanted);
+  if (found == names.end())
+    config.fail("body", fmt::format("--radius {}: there is no free [[body]] of that name, but {}",
+                                    wanted, fmt::join(names, ", ")));
+  return free[static_cast<std::size_t>(found - names.begin())];
 }
 
 // As far in one direction as in the others, nearly.
@@ -102,8 +126,7 @@ bool is_round(const std::vector<Vec<D>>& shape) {
 }
 
 template <int D>
-void check_measurable(const Config& config, const Scene<D>& scene, const Config& entry,
-                      const BodySettings<D>& body) {
+void check_measurable(const Config& config, const Scene<D>& scene, const Chosen& chosen) {
   const Config fluid = config.table("fluid");
   const SceneSettings<D>& s = scene.settings();
   if (!s.model->thermal())
@@ -112,12 +135,24 @@ void check_measurable(const Config& config, const Scene<D>& scene, const Config&
     fluid.fail("mass",
                "configurations and friction are those without mass, and so are measured: add "
                "--set fluid.mass=0.0 (with physical inputs that need a mass give gamma, a, s)");
-  if (!s.molecules.empty())
+  if (s.molecules.size() > (chosen.molecule ? 1 : 0))
     log_warning("[[molecule]] is left out: the radius is measured in the fluid alone");
-  if (!body.shapes.empty())
-    entry.fail("radius",
-               "bodies of several sizes have several radii: choose one, as by --set "
-               "body.0.radius=1.0");
+  if (!chosen.molecule && !s.bodies[chosen.at].shapes.empty())
+    config.tables("body")[chosen.at].fail(
+        "radius",
+        "bodies of several sizes have several radii: choose one, as by --set "
+        "body.0.radius=1.0");
+}
+
+template <int D>
+double reach_of_particle(const Scene<D>& scene, const MoleculeSettings<D>& m) {
+  const PressureRange range = pressure_range(scene);
+  const std::size_t species = range.colloid.size();
+  double reach = 0.0;
+  for (std::size_t other = 0; other < species && !range.reaches.empty(); ++other)
+    if (range.colloid[other] == 0)
+      reach = std::max(reach, range.reaches[index(m.species[0]) * species + other]);
+  return std::max(0.0, reach - 0.5 * range.reach);
 }
 
 // Of the fluid between the bodies of the case, where all of these say what they take from it; else over all the space.
@@ -131,6 +166,13 @@ double density_between(const Scene<D>& scene) {
     known = known && b.excluded_volume > 0.0;
     excluded += bodies * b.excluded_volume;
     balls += bodies * unit_ball_volume<D> * std::pow(b.radius(), D);
+  }
+  for (const MoleculeSettings<D>& m : s.molecules) {
+    if (m.beads() > 1) continue;
+    const auto colloids = static_cast<double>(m.molecules());
+    known = known && m.excluded_volume > 0.0;
+    excluded += colloids * m.excluded_volume;
+    balls += colloids * unit_ball_volume<D> * std::pow(reach_of_particle(scene, m), D);
   }
   const double space = s.fluid_volume();
   const std::int64_t fluid = s.count >= 0 || s.start == StartKind::file
@@ -173,8 +215,8 @@ std::string body_text(const MeasuredBody& m, double edge) {
   for (int c = 0; c < m.dimension; ++c)
     middle += fmt::format("{}{}", c > 0 ? ", " : "", 0.5 * edge);
   return fmt::format(
-      "[[body]]\n{}positions = [{{ at = [{}] }}]\n[[observe]]\nkind = \"mobility\"\nevery = {}\n",
-      m.body, middle, between_samples);
+      "[[{}]]\n{}positions = [{{ at = [{}] }}]\n[[observe]]\nkind = \"mobility\"\nevery = {}\n",
+      m.entry, m.body, middle, between_samples);
 }
 
 Measured measured(const Results& results, const std::string& name) {
@@ -224,11 +266,14 @@ PureFluid pure_fluid_in(const MeasuredBody& m, int threads,
   return fluid;
 }
 
-// Free particles beyond `far` from the body's centre.
+// Free particles beyond `far` from the body's centre, or from the single particle.
 template <int D>
 double count_far(const Scene<D>& scene, double far) {
   const Particles<D>& particles = scene.particles();
-  const Vec<D>& centre = particles.bodies[0].pose.centre;
+  const Vec<D> centre =
+      particles.bodies.empty()
+          ? particles.position[index(particles.index_of_id()[index(scene.molecules()[0].first)])]
+          : particles.bodies[0].pose.centre;
   double count = 0.0;
   for (std::size_t i = 0; i < particles.position.size(); ++i)
     if (particles.is_free(i) && norm(scene.box().separation(particles.position[i], centre)) > far)
@@ -290,25 +335,34 @@ template <int D>
 MeasuredBody measured_body(const Config& config, const Scene<D>& scene, double dt,
                            const std::string& name) {
   const SceneSettings<D>& s = scene.settings();
-  const std::size_t at = index_of_body(config, s.bodies, name);
-  const BodySettings<D>& body = s.bodies[at];
-  check_measurable(config, scene, config.tables("body")[at], body);
+  const Chosen chosen = choose_body(config, s, name);
+  check_measurable(config, scene, chosen);
   const Config portable = Config::from_text(portable_case(config), "case.toml");
   const auto reference = s.model->reference_state(0.0);
   MeasuredBody m;
   m.dimension = D;
-  m.name = body.name;
+  m.entry = chosen.molecule ? "molecule" : "body";
+  m.name = chosen.molecule ? s.molecules[chosen.at].name : s.bodies[chosen.at].name;
+  const std::int32_t species =
+      chosen.molecule ? s.molecules[chosen.at].species[0] : s.bodies[chosen.at].species;
+  m.own_species = s.species[index(species)].name;
   m.fills_space = reference && reference->spacing > 0.0;
   m.density = reference ? reference->density : density_between(scene);
   m.fluid = fluid_lines(portable, s, m);
   m.species = species_text(s.species) + tables_of(portable, "pair");
-  m.body = lines_of(portable.elements("body")[at],
+  m.body = lines_of(portable.elements(m.entry)[chosen.at],
                     {"positions", "count", "fraction", "fraction_of", "clearance", "force",
                      "torque", "hydrodynamic_radius", "excluded_volume"});
-  m.sites = static_cast<std::int64_t>(body.shape.size());
-  m.reach = body.radius();
-  m.round = is_round<D>(body.shape);
-  m.cutoff = s.model->cutoff();
+  if (chosen.molecule) {
+    m.sites = 1;
+    m.reach = reach_of_particle(scene, s.molecules[chosen.at]);
+  } else {
+    const BodySettings<D>& body = s.bodies[chosen.at];
+    m.sites = static_cast<std::int64_t>(body.shape.size());
+    m.reach = body.radius();
+    m.round = is_round<D>(body.shape);
+  }
+  m.cutoff = pressure_range(scene).reach;
   m.dt = measuring_step(scene, dt);
   m.seed = s.seed;
   return m;

@@ -204,7 +204,8 @@ TYPED_TEST(FrozenPressureTest, RatesAreThoseOfHatFunctions) {
     OneStep<D> step(settings);
     if (walls) step.nulls.erase(step.nulls.begin(), step.nulls.begin() + D);
     const BruteForce<D> brute(step);
-    const FrozenPressure<D> pressure(step.scene.particles(), step.record, 1.0, 1.0, 1e-11);
+    const FrozenPressure<D> pressure(step.scene.particles(), step.record, {.reach = 1.0}, 1.0,
+                                     1e-11);
     ASSERT_EQ(pressure.nodes(), brute.nodes);
     const auto slips = support::random_vectors<D>(index(step.record.start.network.size()), 5);
     const std::vector<double> exact = brute.rates(slips), rates = pressure.rates(slips);
@@ -218,12 +219,12 @@ TYPED_TEST(FrozenPressureTest, RatesAreThoseOfHatFunctions) {
 TYPED_TEST(FrozenPressureTest, PushesAsItSeesMotion) {
   constexpr int D = TypeParam::D;
   OneStep<D> step(fluid_with_bodies<D>());
-  const FrozenPressure<D> pressure(step.scene.particles(), step.record, 1.0, 1.0, 1e-11);
+  const FrozenPressure<D> pressure(step.scene.particles(), step.record, {.reach = 1.0}, 1.0, 1e-11);
   const std::size_t n = step.record.start.position.size();
   const std::vector<double> p = support::random_numbers(pressure.nodes(), 7);
   const auto u = support::random_vectors<D>(n, 8);
-  const std::vector<double> rates = pressure.rates_of(u);
-  const std::vector<Vec<D>> push = pressure.push(p);
+  const std::vector<double> rates = pressure.rates_of({u});
+  const std::vector<Vec<D>> push = pressure.push(p).force;
   double of_rates = 0.0, of_push = 0.0;
   Vec<D> net{};
   for (std::size_t g = 0; g < p.size(); ++g) of_rates += p[g] * rates[g];
@@ -234,9 +235,9 @@ TYPED_TEST(FrozenPressureTest, PushesAsItSeesMotion) {
   EXPECT_GT(std::abs(of_rates), 0.1);
   EXPECT_NEAR(of_rates, of_push, 1e-10 * std::abs(of_rates));
   EXPECT_LT(norm(net), 1e-12 * largest<D>(push));
-  EXPECT_LT(largest(pressure.rates_of(std::vector<Vec<D>>(n, support::uniform_vec<D>(2.0)))),
+  EXPECT_LT(largest(pressure.rates_of({std::vector<Vec<D>>(n, support::uniform_vec<D>(2.0))})),
             1e-12 * largest(rates));
-  const std::vector<Vec<D>> still = pressure.push(std::vector<double>(pressure.nodes(), 1.0));
+  const std::vector<Vec<D>> still = pressure.push(std::vector<double>(pressure.nodes(), 1.0)).force;
   EXPECT_GT(largest<D>(push), 0.1);
   EXPECT_LT(largest(step.of_forces([&](std::size_t i) { return still[i]; })),
             1e-8 * largest<D>(push));
@@ -256,23 +257,24 @@ TYPED_TEST(FrozenPressureTest, MobilityIsThatOfTheSaddlePoint) {
   double exact = 0.0;
   for (std::size_t k = 0; k < f.size(); ++k) exact += f[k] * u[k];
   const auto answer = [&](double tolerance, const FrozenPressure<D>* pressure) {
-    return odpd::answer_to_force<D>(step.scene.particles(), step.record, force, 0.0, tolerance,
+    return odpd::answer_to_force<D>(step.scene.particles(), step.record, {force}, 0.0, tolerance,
                                     pressure);
   };
   EXPECT_GT(answer(1e-10, nullptr).mobility, 1.02 * exact);
   for (const double tolerance : {1e-10, 0.01}) {
     SCOPED_TRACE(tolerance);
-    const FrozenPressure<D> pressure(step.scene.particles(), step.record, 1.0, 1.0, tolerance);
+    const FrozenPressure<D> pressure(step.scene.particles(), step.record, {.reach = 1.0}, 1.0,
+                                     tolerance);
     const auto held = answer(tolerance, &pressure);
     EXPECT_NEAR(held.mobility, exact, (tolerance < 1e-3 ? 1e-7 : 5e-4) * exact);
     if (tolerance > 1e-3) continue;
-    std::vector<Vec<D>> velocity = step.record.respond({force}, tolerance).velocity;
-    std::vector<double> rates = pressure.rates_of(velocity);
-    const auto found = pressure.hold(rates, velocity, exact, tolerance).pressure;
+    auto motions = step.record.respond({force}, tolerance);
+    std::vector<double> rates = pressure.rates_of(motions);
+    const auto found = pressure.hold(rates, motions, exact, tolerance).pressure;
     for (std::size_t g = 1; g < p.size(); ++g)
       EXPECT_NEAR(found[g] - found[0], p[g] - p[0], 1e-4 * largest(p));
-    EXPECT_LT(largest(pressure.rates_of(held.velocity)),
-              1e-4 * largest(pressure.rates_of(answer(tolerance, nullptr).velocity)));
+    EXPECT_LT(largest(pressure.rates_of(held)),
+              1e-4 * largest(pressure.rates_of(answer(tolerance, nullptr))));
   }
 }
 
@@ -281,11 +283,11 @@ TYPED_TEST(FrozenPressureTest, NarrowBoxesHaveAPressureToo) {
   constexpr int D = TypeParam::D;
   OneStep<D> step(fluid_with_bodies<D>());
   const double wide = 10.0 * step.record.start.box.size[0];
-  const FrozenPressure<D> pressure(step.scene.particles(), step.record, 1.0, wide, 1e-8);
+  const FrozenPressure<D> pressure(step.scene.particles(), step.record, {.reach = 1.0}, wide, 1e-8);
   EXPECT_EQ(pressure.nodes(), 1U << D);
   auto force = support::random_vectors<D>(step.record.start.position.size(), 9);
   const auto mobility = [&](const FrozenPressure<D>* with) {
-    return odpd::answer_to_force<D>(step.scene.particles(), step.record, force, 0.0, 1e-8, with)
+    return odpd::answer_to_force<D>(step.scene.particles(), step.record, {force}, 0.0, 1e-8, with)
         .mobility;
   };
   EXPECT_LT(mobility(&pressure), 0.999 * mobility(nullptr));
@@ -304,7 +306,7 @@ TYPED_TEST(FrozenPressureTest, ViscosityIsThatOfTheSaddlePoint) {
     flow[k][0] = points.between(stage.network, k)[1];
     friction[k] = odpd::friction_of<D>(stage.network, k, flow[k]);
   }
-  const FrozenPressure<D> pressure(step.scene.particles(), step.record, 1.0, 1.0, 1e-10);
+  const FrozenPressure<D> pressure(step.scene.particles(), step.record, {.reach = 1.0}, 1.0, 1e-10);
   std::vector<double> rates = brute.rates(flow);
   EXPECT_GT(largest(rates), 0.1);
   pressure.drop_whole(rates);
@@ -342,8 +344,9 @@ TYPED_TEST(FrozenPressureTest, GridIsTiltedWithSlidingImages) {
     OneStep<D> step(settings);
     std::vector<Vec<D>> sorted;
     for (const auto id : step.scene.particles().id) sorted.push_back(force[index(id)]);
-    const FrozenPressure<D> pressure(step.scene.particles(), step.record, 1.0, 1.0, 1e-10);
-    return odpd::answer_to_force<D>(step.scene.particles(), step.record, sorted, 0.0, 1e-10,
+    const FrozenPressure<D> pressure(step.scene.particles(), step.record, {.reach = 1.0}, 1.0,
+                                     1e-10);
+    return odpd::answer_to_force<D>(step.scene.particles(), step.record, {sorted}, 0.0, 1e-10,
                                     &pressure)
         .mobility;
   };
@@ -370,7 +373,7 @@ TEST(FrozenPressureThreads, DoNotChangeItsBits) {
                                odpd::make_solver({.name = "pcg", .tolerance = 1e-6}), {.seed = 3});
     const auto integrator = odpd::make_integrator<2>("trapezoidal");
     const auto record = integrator->step(dynamics, odpd::Clock{.dt = 0.005});
-    const FrozenPressure<2> pressure(own.particles(), record, 1.0, 1.0, 0.01);
+    const FrozenPressure<2> pressure(own.particles(), record, {.reach = 1.0}, 1.0, 0.01);
     return odpd::answer_to_flow<2>(own.particles(), record, odpd::shear_gradient<2>(0, 1), 0.01,
                                    &pressure)
         .power;
@@ -390,7 +393,7 @@ TEST(FrozenPressureOfLines, IsRefused) {
   settings.model = odpd::make_dpd<2>({.a = 0.0, .gamma = 2.0, .gamma_perp = 1.0, .cutoff = 1.2});
   OneStep<2> step(settings);
   ASSERT_GT(step.record.start.network.size(), 11);
-  const FrozenPressure<2> pressure(step.scene.particles(), step.record, 1.0, 0.3, 1e-8);
+  const FrozenPressure<2> pressure(step.scene.particles(), step.record, {.reach = 1.0}, 0.3, 1e-8);
   support::expect_error<odpd::SolverError>(
       [&] {
         odpd::answer_to_flow<2>(step.scene.particles(), step.record, odpd::shear_gradient<2>(0, 1),

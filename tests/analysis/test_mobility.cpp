@@ -120,6 +120,69 @@ TYPED_TEST(MobilityTest, OppositeForceGoesByVolumeWhereItIsKnown) {
               1e-8 * translation);
 }
 
+// Two colloids that are one particle each and spin.
+template <int D>
+odpd::SceneSettings<D> fluid_with_spinning_particles() {
+  auto settings = some_fluid<D>();
+  settings.species = {{.name = "fluid"}, {.name = "ball", .fraction = 0.0, .lever_radius = 0.5}};
+  settings.model = odpd::make_dpd<D>({.a = 5.0, .gamma = 3.0, .gamma_perp = 1.0, .cutoff = 1.0}, 2);
+  odpd::MoleculeSettings<D> ball;
+  ball.name = "ball";
+  ball.shape = {Vec<D>{}};
+  ball.species = {1};
+  ball.count = 2;
+  settings.molecules = {ball};
+  return settings;
+}
+
+// The angular velocity that a torque on the particle itself gives it.
+TYPED_TEST(MobilityTest, OfAParticleThatSpinsIsThatOfATorqueOnIt) {
+  constexpr int D = TypeParam::D;
+  constexpr int turns = odpd::rotation_components<D>;
+  OneStep<D> step(fluid_with_spinning_particles<D>());
+  const auto n = step.record.start.position.size();
+  double rotation = 0.0, component = 0.0, both = 0.0;
+  const auto index_of = step.scene.particles().index_of_id();
+  const std::array balls{index(index_of[n - 2]), index(index_of[n - 1])};
+  for (const std::size_t ball : balls)
+    for (int c = 0; c < turns; ++c) {
+      odpd::ParticleLoads<D> loads{std::vector<Vec<D>>(n), std::vector<Vec<D>>(n)};
+      loads.torque[ball][c] = 1.0;
+      const auto motions = step.record.respond(loads, 1e-12);
+      rotation += motions.spin[ball][c] / (2.0 * turns);
+      both += motions.spin[balls[ball == balls[0] ? 1 : 0]][c];
+      if (c == 0) component += 0.5 * motions.spin[ball][c];
+    }
+  ASSERT_GT(rotation, 0.0);
+  const auto results = measured<D>(step, {.bodies = {}, .molecules = {0}, .tolerance = 1e-10});
+  EXPECT_NEAR(records::mean(results, "m.ball.rotation"), rotation, 1e-8 * rotation);
+  if (D == 3) {
+    EXPECT_NEAR(records::mean(results, "m.ball.rotation.x"), component, 1e-8 * component);
+  }
+  const auto random = measured<D>(
+      step, {.bodies = {}, .molecules = {0}, .random_loads = true, .tolerance = 1e-6}, 64);
+  EXPECT_NEAR(records::mean(random, "m.ball.rotation"), rotation,
+              1e-6 * rotation + std::abs(both) / turns);
+}
+
+// One pressure everywhere pushes nobody, and turns nobody.
+TYPED_TEST(MobilityTest, EvenPressureDoesNotTurnParticles) {
+  constexpr int D = TypeParam::D;
+  OneStep<D> step(fluid_with_spinning_particles<D>());
+  const odpd::FrozenPressure<D> pressure(step.scene.particles(), step.record,
+                                         odpd::pressure_range(step.scene), 1.0, 1e-11);
+  const odpd::ParticleLoads<D> loads = pressure.push(std::vector<double>(pressure.nodes(), 1.0));
+  double most = 0.0;
+  for (std::size_t i = 0; i < loads.force.size(); ++i)
+    most = std::max({most, norm(loads.force[i]), norm(loads.torque[i])});
+  EXPECT_LT(most, 1e-7);
+  std::vector<double> uneven(pressure.nodes(), 0.0);
+  uneven[0] = 1.0;
+  most = 0.0;
+  for (const Vec<D>& t : pressure.push(uneven).torque) most = std::max(most, norm(t));
+  EXPECT_GT(most, 1e-4);
+}
+
 // A dimer across a corner of the box: forces of half each on its beads, and opposite ones across its line.
 TYPED_TEST(MobilityTest, OfMoleculesIsThatOfTheDenseMatrix) {
   constexpr int D = TypeParam::D;

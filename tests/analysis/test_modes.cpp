@@ -232,7 +232,7 @@ TYPED_TEST(ModesTest, ControlTakesOutWhatTheNoiseMakes) {
     odpd::Dynamics<D> dynamics(scene.box(), scene.particles(), scene.model(), scene,
                                odpd::make_solver({.name = "picard", .tolerance = 1e-12}), {});
     const auto respond = [&](const std::vector<Vec<D>>& force, double tolerance) {
-      return dynamics.respond(step.record.start, force, tolerance, false);
+      return dynamics.respond(step.record.start, {force}, tolerance, false).velocity;
     };
     const Waves<D> waves({2}, {0}, 4.0);
     double chi = 0.0, rough = 0.0;
@@ -249,9 +249,9 @@ TYPED_TEST(ModesTest, ControlTakesOutWhatTheNoiseMakes) {
     const double exact = 36.0 / (2.0 * std::pow(4.0, D) * k * k * chi);
     for (const double tolerance : {1e-10, 0.3}) {
       SCOPED_TRACE(tolerance);
-      step.record.respond = [&](const std::vector<Vec<D>>& force, double asked) {
+      step.record.respond = [&](const odpd::ParticleLoads<D>& loads, double asked) {
         EXPECT_EQ(asked, tolerance);
-        return respond(force, asked);
+        return odpd::ParticleMotions<D>{respond(loads.force, asked)};
       };
       Modes<D> modes = step.observer({.numbers = {2},
                                       .axes = {0},

@@ -93,6 +93,39 @@ TEST(RadiusRun, TakesFluidAndBodyOfACase) {
   EXPECT_THROW(body_of(text), odpd::ConfigError);
 }
 
+// A colloid of one particle that spins: its own cutoff sets how far it reaches, the fluid's sets the grid of the pressure. Its radii by drag and
+// by torque agree; with a grid by the larger cutoff, or a pressure of its own, they would not.
+TEST(RadiusRun, OfOneParticle) {
+  const MeasuredBody m = body_of(case_with(
+      "density = 4.0\na = 18.5\ngamma = 4.5\n",
+      "[[species]]\nname = \"solvent\"\n[[species]]\nname = \"colloid\"\ncount = 0\n"
+      "lever_radius = 1.0\n"
+      "[[pair]]\nspecies = [\"solvent\", \"colloid\"]\ncore = 1.0\ncutoff = 1.8\ngamma = 45.0\n"
+      "gamma_perp = 45.0\n"
+      "[[molecule]]\nname = \"ball\"\nspecies = \"colloid\"\nshape = \"particle\"\ncount = 3\n"
+      "clearance = 3.0\nexcluded_volume = 4.0\n"));
+  EXPECT_EQ(m.entry, "molecule");
+  EXPECT_EQ(m.name, "ball");
+  EXPECT_EQ(m.sites, 1);
+  EXPECT_DOUBLE_EQ(m.reach, 1.3);
+  EXPECT_DOUBLE_EQ(m.cutoff, 1.0);
+  EXPECT_DOUBLE_EQ(m.density, 576.0 / 132.0);
+  const auto never = [] { return false; };
+  const odpd::PureFluid fluid = odpd::measure_pure_fluid(
+      m, 1, [](const odpd::PureFluid& f) { return f.eta.error < 0.02 * f.eta.value; }, never);
+  const odpd::FluidViscosity viscosity{fluid.eta.value, fluid.density.value, 2.0};
+  const BodyInCell cell = odpd::measure_body(
+      m, 7.5, 4.0, 1,
+      [&](const BodyInCell& c) {
+        const odpd::Measured a = odpd::drag_radius(c, viscosity);
+        return a.error < 0.03 * a.value;
+      },
+      never);
+  const double drag = odpd::drag_radius(cell, viscosity).value;
+  EXPECT_NEAR(drag, 1.6, 0.2);
+  EXPECT_NEAR(odpd::torque_radius(cell, viscosity).value / drag, 1.0, 0.1);
+}
+
 // The fluid between bodies that say what they take, without beads of molecules.
 TEST(RadiusRun, DensityOfTheFluidAlone) {
   const std::string disks =

@@ -5,7 +5,8 @@
 //   A force f on each particle:                 R w = f,          f . R^-1 f = 2 f.w - w.R w + e.R e
 //   A flow of rate 1, slips A = E r at edges:   R w = J^T Z A,    V eta = (A - J w) . Z (A - J w) - e.R e
 //
-// with R = P^T (sum J^T Z J + zeta_0) P, J and Z of pairs/network.h, and e the error of w: of second order, so that a loose
+// with R = P^T (sum J^T Z J + zeta_0) P, J and Z of pairs/network.h (w and f with the angular velocities of particles that spin, and torques on
+// them), and e the error of w: of second order, so that a loose
 // tolerance does. f . R^-1 f is how fast f . r moves for that force, and kT of it is how fast it spreads by diffusion (Einstein).
 // V eta is what particles that give way to each other still dissipate of the flow, over its rate squared: eta is the stress of
 // the configuration over the rate, that of a flow so fast to and fro that it changes nothing.
@@ -27,8 +28,7 @@
 namespace odpd {
 
 template <int D>
-struct ForceAnswer {
-  std::vector<Vec<D>> velocity;  ///< w, one per particle (length/time)
+struct ForceAnswer : ParticleMotions<D> {  ///< w
   double mobility = 0.0;  ///< f . R^-1 f; where nothing takes up a net force, of f less its mean
   double noise = 0.0;     ///< w . J^T F_B: what the random force of the step adds to f . r per time
 };
@@ -36,7 +36,7 @@ struct ForceAnswer {
 /// One solve to this tolerance (0: that of the run), and with a pressure those that find it. Throws SolverError.
 template <int D>
 ForceAnswer<D> answer_to_force(const Particles<D>& particles, const StepRecord<D>& record,
-                               const std::vector<Vec<D>>& force, double zeta_0, double tolerance,
+                               const ParticleLoads<D>& loads, double zeta_0, double tolerance,
                                const FrozenPressure<D>* pressure = nullptr);
 
 /// E: component c of the slip is E[c] . r.

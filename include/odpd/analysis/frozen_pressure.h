@@ -9,11 +9,11 @@
 //
 //   t = c e - Z J w,    R w = J^T c e,    c = W'(r) times the number of free ends,    W = (1 - r/r_c)^2
 //
-// so that J^T t = 0 (but for what a drag zeta_0 takes up). C s with c e in place of t would be how fast densities sum_j W(r_ij) of the free
+// so that J^T t = 0 (but for what a drag zeta_0 takes up), torques of particles that spin included. C s with c e in place of t would be how fast densities sum_j W(r_ij) of the free
 // particles change. But a smooth compression need not change those, as particles can make way for each other until they have the same
 // neighbours at a smaller distance. Where one pressure everywhere pushes nobody there is no such way: only the slip of the whole is left
-// in C s. All goes by pairs: momentum is kept, and uniform motion has no rate. Constituents of bodies and particles of walls have no
-// pressure of their own.
+// in C s. All goes by pairs: momentum is kept, and uniform motion has no rate. Constituents of bodies, particles of walls and colloids of
+// one particle have no pressure of their own. At an edge of a colloid r_c is the cutoff of this pair.
 //
 // p makes a functional of the load smallest or largest, whose value there is the one wanted, so that the error of this is of second
 // order in those of p and of u:
@@ -38,33 +38,45 @@
 
 namespace odpd {
 
+/// Who has a pressure, and how far it pushes: by species.
+struct PressureRange {
+  double reach = 1.0;  ///< r_c of W, that of the fluid's pairs (length)
+  /// Of each pair of species (PairModel::reaches), for edges of colloids; empty: `reach` for all.
+  std::span<const double> reaches{};
+  std::vector<char> colloid{};  ///< species without pressures of their own; empty: none
+};
+
+/// That of a scene, whose colloids are the [[molecule]] of one particle. The fluid is what most of the other particles are.
+template <int D>
+PressureRange pressure_range(const Scene<D>& scene);
+
 template <int D>
 class FrozenPressure {
  public:
-  /// For the record's start. `reach`: r_c of W, that of the pairs (length); `spacing` of the grid (length), as near as the box
+  /// For the record's start. `spacing` of the grid (length), as near as the box
   /// allows, along the edges of the sheared cell where images slide. One solve to `tolerance`. On all ranks together. Throws SolverError.
-  FrozenPressure(const Particles<D>& particles, const StepRecord<D>& record, double reach,
-                 double spacing, double tolerance);
+  FrozenPressure(const Particles<D>& particles, const StepRecord<D>& record,
+                 const PressureRange& range, double spacing, double tolerance);
 
   std::size_t nodes() const { return diagonal_.size(); }
   /// C s of slips s, one per edge; of nodes.
   std::vector<double> rates(const std::vector<Vec<D>>& slips) const;
-  /// C J u of velocities u, one per particle.
-  std::vector<double> rates_of(const std::vector<Vec<D>>& velocity) const;
+  /// C J u of velocities u.
+  std::vector<double> rates_of(const ParticleMotions<D>& motions) const;
   /// Takes out the rate of the whole, which is none in a box that keeps its volume: no pressure acts on it, J^T t = 0, so that what is seen of it
   /// is error, or the chance of a finite box in a flow.
   void drop_whole(std::vector<double>& rates) const;
-  /// -G p, one per particle: what this pressure pushes it with.
-  std::vector<Vec<D>> push(std::span<const double> pressure) const;
+  /// -G p: what this pressure pushes particles with.
+  ParticleLoads<D> push(std::span<const double> pressure) const;
 
   struct Held {
     std::vector<double> pressure;  ///< p
     double work = 0.0;             ///< p . rates that are left
   };
-  /// Adds to `velocity`, on entry u without a pressure, what p moves, until `rates`, on entry C A + G^T u, are gone so far that the
+  /// Adds to `motions`, on entry u without a pressure, what p moves, until `rates`, on entry C A + G^T u, are gone so far that the
   /// value hardly changes, but for that of the whole: twice in turn by less than a fifth of `tolerance` times `value`. Solves to `tolerance`. At 0.01 some 4
   /// solves find the value to 0.1 %. Throws SolverError where no pressure can.
-  Held hold(std::vector<double>& rates, std::vector<Vec<D>>& velocity, double value,
+  Held hold(std::vector<double>& rates, ParticleMotions<D>& motions, double value,
             double tolerance) const;
 
  private:
@@ -72,8 +84,9 @@ class FrozenPressure {
     std::array<std::int32_t, index(D)> low{};  // the node below
     Vec<D> beyond{};                           // of it, in spacings
   };
-  void place(const Particles<D>& particles, double spacing);
-  void find_tensions(const Particles<D>& particles, double reach, double tolerance);
+  void place(double spacing);
+  void find_tensions(const Particles<D>& particles, const PressureRange& range, double tolerance);
+  ParticleLoads<D> loads_of(const std::vector<Vec<D>>& edge_force) const;
   /// The pressure at particle i is one of those of edge k.
   bool has_pressure(std::size_t i, std::size_t k) const {
     const PairNetwork<D>& network = record_.start.network;
@@ -105,7 +118,7 @@ constexpr double solves_with_pressure = 5.0;
 /// Spacing of an observer's grid, in cutoffs, as near as the box allows.
 constexpr double pressure_spacing = 1.5;
 
-/// That of an observer, if wanted: reach is the cutoff of the scene's pairs.
+/// That of an observer, if wanted.
 template <int D>
 std::optional<FrozenPressure<D>> pressure_on(const Particles<D>& particles,
                                              const StepRecord<D>& record, const Scene<D>& scene,

@@ -8,7 +8,8 @@
 //   collective     (1/d N) sum_c V_c per force on each, where all N are pushed alike
 //
 // of mu = S (P^T R P)^+ S^T. S^T F is F/p on each of its p particles; S^T T is (I^+ T) x a_k on the one at arm a_k, which on a
-// rigid body is that force or torque, and whose answer S v is the mean velocity and the rigid spin closest to v. With unit
+// rigid body is that force or torque, and whose answer S v is the mean velocity and the rigid spin closest to v. On a molecule of one particle
+// that spins T is the torque on it. With unit
 // loads one solve has one direction of one body. With random ones f = S^T z, z = +-1 of every component of all N bodies, E z z^T = 1,
 // so that z . mu z is N times the mean over all of them but for its spread (Hutchinson 1990), with a solve for translation and one
 // for rotation: worth it where they feel little of each other, as rotations do.
@@ -16,7 +17,7 @@
 // Where nothing takes up a force (no wall, no held body, no drag) the opposite one is spread over the box, and velocities are relative
 // to the mean over it: that of a periodic box without net flow. Free particles share in it alike, the sites of a body as the fluid in
 // its place would where the `excluded_volume` of every [[body]] is given, n v_ex of them by n fluid particles per volume between bodies,
-// else like other particles. With the volume it is the uniform pressure gradient of Hasimoto 1959. Beads of a molecule give way to the
+// else like other particles; so the beads of a [[molecule]] with an `excluded_volume`. With the volume it is the uniform pressure gradient of Hasimoto 1959. Beads of a molecule give way to the
 // load each by itself, as springs take time: it is the mobility before they do, above that of a rigid body of the same beads.
 #include "odpd/analysis/frozen_pressure.h"
 #include "odpd/analysis/molecule_beads.h"
@@ -52,6 +53,12 @@ class Mobility : public Observer<D> {
     std::vector<Vec<D>> arms;
     Rotation<D> axes;         // of the directions of unit loads
     std::uint64_t which = 0;  // of its random numbers
+    bool spins = false;       // it is one particle that spins
+
+    /// Axes that it turns about.
+    int rotations() const;
+    /// Adds a torque t. False where it is about the line of a rod, and nothing.
+    bool load_by_torque(const Vec<D>& t, ParticleLoads<D>& loads) const;
   };
   /// Means over movers; NaN: they do not turn, or not about that axis.
   struct Answers {
@@ -65,17 +72,23 @@ class Mobility : public Observer<D> {
   };
   std::vector<std::vector<Mover>> movers(const Step& step) const;
   std::vector<Mover> chosen(std::vector<Mover> movers, std::uint64_t step) const;
+  /// Of a force on each body and molecule, with 1 for a particle of the fluid.
+  struct Weights {
+    std::vector<double> site,
+        bead;  // of each [[body]] and [[molecule]]; both empty: all particles share alike
+  };
+  static Weights weights_of_kinds(const Scene<D>& scene);
   /// How much of the opposite force each particle takes, with 1 for those of the fluid.
   std::vector<double> weights(const Particles<D>& particles) const;
-  /// f . R^-1 f of a force on each particle.
-  double answer(const Step& step, std::vector<Vec<D>> force) const;
+  /// f . R^-1 f of loads on the particles.
+  double answer(const Step& step, ParticleLoads<D> loads) const;
   Answers to_unit_loads(const Step& step, const std::vector<Mover>& movers) const;
   Answers to_random_loads(const Step& step, const std::vector<Mover>& movers) const;
   double to_one_force_on_all(const Step& step, const std::vector<Mover>& movers) const;
 
   MobilitySettings mobility_;
   const Scene<D>& scene_;
-  std::vector<double> site_weight_;  // of each [[body]]; empty: all particles share alike
+  Weights kind_weight_;
   MoleculeBeads<D> beads_;
   CounterRandom random_;
 };

@@ -1,5 +1,6 @@
 #pragma once
-// The scenes of `odpd calibrate --radius`: one body of a case in a periodic cube of its fluid, and the fluid alone, at rest and at equilibrium.
+// The scenes of `odpd calibrate --radius`: one body of a case, or one colloid that is a single particle ([[molecule]] with shape = "particle"), in a
+// periodic cube of its fluid, and the fluid alone, at rest and at equilibrium.
 // Both are sampled by observers that see no noise (analysis/mobility.h, analysis/high_frequency_viscosity.h).
 #include <functional>
 #include <string>
@@ -13,18 +14,22 @@ namespace odpd {
 /// What is measured, and with what.
 struct MeasuredBody {
   int dimension = 3;
-  std::string name;  ///< of the [[body]]
+  std::string entry = "body";  ///< or "molecule", of one particle
+  std::string name;            ///< of it
+  std::string own_species;     ///< of its particles
   // As TOML:
   std::string fluid;    ///< lines of [fluid], but for what says how many particles there are
   std::string species;  ///< [[species]] and [[pair]]
-  std::string body;     ///< lines of its [[body]], but for its place
+  std::string body;     ///< lines of its entry, but for its place
   bool fills_space =
       false;  ///< friction goes by densities, with those of the body's particles (SDPD)
   std::int64_t sites = 0;  ///< particles of the body
-  double reach = 0.0;      ///< its outermost ones from its centre (length)
-  bool round = true;       ///< a disk or ball, or like one
-  double density = 4.0;    ///< n that the fluid is to have far from the body (1/length^d)
-  double cutoff = 1.0;     ///< of the model (length)
+  /// Its outermost ones from its centre (length). Of a single particle, where a body of its range would have them: half a cutoff of the fluid
+  /// within where its friction ends.
+  double reach = 0.0;
+  bool round = true;     ///< a disk or ball, or like one
+  double density = 4.0;  ///< n that the fluid is to have far from the body (1/length^d)
+  double cutoff = 1.0;   ///< of the fluid's pairs (length)
   double dt = 0.01;
   std::uint64_t seed = 1;
 
@@ -37,7 +42,7 @@ struct MeasuredBody {
   double far(double edge) const;
 };
 
-/// Takes the body `name` ("": the only free one) from a case that a scene was built from. Throws ConfigError for what cannot be measured.
+/// Takes the body or single particle `name` ("": the only free one) from a case that a scene was built from. Throws ConfigError for what cannot be measured.
 template <int D>
 MeasuredBody measured_body(const Config& config, const Scene<D>& scene, double dt,
                            const std::string& name);

@@ -57,6 +57,7 @@ class BondedModel : public PairModel<D> {
   std::string name() const override { return pairs_->name(); }
   int species() const override { return pairs_->species(); }
   double cutoff() const override { return pairs_->cutoff(); }
+  std::span<const double> reaches() const override { return pairs_->reaches(); }
   std::vector<double> kinks(Site site_i, Site site_j) const override {
     return pairs_->kinks(site_i, site_j);
   }
