@@ -119,15 +119,7 @@ class Elements {
       }
     });
     constexpr double shares = D * (D + 2);
-    holding_ = isotropic(1.0, 0.0);
     turning_ = isotropic(0.5 * D / shares, (0.25 * D - 0.5) / shares);
-  }
-  /// zeta_perp l^2 of edges to known velocities, whose anchor says nothing of the node's own spin.
-  double turn_held(std::size_t node) const {
-    double sum = 0.0;
-    for (const auto& link : spins_->links(node))
-      if (link.other < 0) sum += link.zeta_perp * link.own * link.own;
-    return sum;
   }
   /// The node's half of zeta_perp r^2 of edges with levers.
   double turned(std::size_t node) const {
@@ -157,7 +149,6 @@ class Elements {
   const SpinResistance<D>* spins_;
   std::vector<float> stiffness_;  // per body
   Moments inside_{};              // of a constituent
-  Moments holding_{};             // of turn_held
   Moments turning_{};             // of zeta_perp r^2 of edges with levers
   std::vector<Vec<D>> g_;         // of all edges, where some have levers: the friction left to them
   std::vector<typename Resistance<D>::Across> across_;
@@ -181,9 +172,9 @@ void Elements<D>::add_node(std::int64_t n) {
   float stiffness = of_body ? stiffness_[rigid_->body_of(node)] : 0.0F;
   Moments both;
   if (spins_ != nullptr) {
-    const auto more = static_cast<float>(turned(node)), held = static_cast<float>(turn_held(node));
+    const auto more = static_cast<float>(turned(node));
     for (std::size_t k = 0; k < both.size(); ++k)
-      both[k] = stiffness * inside_[k] + more * turning_[k] + held * holding_[k];
+      both[k] = stiffness * inside_[k] + more * turning_[k];
     inside = both.data();
     stiffness = 1.0F;
   }

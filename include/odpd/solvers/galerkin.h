@@ -20,8 +20,7 @@
 //   zeta_perp |E d - e (e . E d)|^2  ->  zeta_perp r^2 / (D (D + 2)) (D E : E - (tr E)^2)
 //
 // Its E : E = 1/2 (|grad v|^2 + d_a v_b d_b v_a) makes blocks that are not symmetric, d_a v_b d_b v_a, of which the mean of it
-// and (div v)^2 is taken: where friction is the same everywhere their integrals are. What holds a spin adds zeta_perp l^2 |grad v|^2
-// (of factors from 0 to 4 the one with the fewest iterations beside walls).
+// and (div v)^2 is taken: where friction is the same everywhere their integrals are.
 #include "odpd/core/index.h"
 #include "odpd/operator/spin_resistance.h"
 #include "odpd/solvers/multigrid.h"
