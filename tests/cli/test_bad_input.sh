@@ -92,6 +92,17 @@ expect_error 1 run box --set 'body=[{shape="ring", radius=0.2}]' --set 'observe=
 expect_error 1 run box --set 'body=[{shape="ring", radius=[0.5, 1e-12]}]' -- shape "two points"
 expect_error 1 run box --set 'body=[{shape="ring", radius=[0.5, -0.1]}]' -- radius "positive"
 expect_error 1 run channel "${sheared[@]}" -- shear.gradient bounded velocity
+# Spins: what nothing takes up, what nothing turns, numbers and schemes.
+spinning=(--set fluid.gamma_perp=2.0 --set fluid.lever_radius=0.5)
+expect_error 1 run box --set fluid.gamma_perp=2.0 -- '--set fluid.gamma_perp' lever_radius 'antisymmetric_stress = true'
+expect_error 1 run box --set fluid.lever_radius=0.5 -- '--set fluid.lever_radius' 'across lines of centres' gamma_perp
+expect_error 1 run box "${spinning[@]}" --set fluid.mass=1.0 --set fluid.moment=-0.1 -- '--set fluid.moment'
+expect_error 1 run box "${spinning[@]}" --set fluid.moment=0.1 -- '--set fluid.moment' fluid.mass
+expect_error 1 run box "${spinning[@]}" --set fluid.mass=1.0 --set integrator.name=setd -- '--set integrator.name' lever_radius trapezoidal
+expect_error 1 run box "${spinning[@]}" --set fluid.mass=1.0 --set fluid.moment=0.0 --set integrator.name=shardlow -- '--set integrator.name' moment
+expect_exit 0 run box "${spinning[@]}" --out spinning
+expect_text "$out_text" eta_rotational spin_relaxation
+
 # Physical inputs: both sets at once, and what the formulas cannot give.
 physical=(--set fluid.eta=3.0)
 expect_error 1 run box "${physical[@]}" -- "box/case.toml:$(line_of box 'gamma = 4.5')" fluid.gamma eta
