@@ -33,10 +33,14 @@ void for_each_centre(const Place& place) {
     for (int y = 0; y < side; ++y) place(Vec<2>{{(x + 0.5) * spacing, (y + 0.5) * spacing}});
 }
 
-DpdModel<2> friction_only(double cutoff, double gamma_perp = 0.0) {
+DpdModel<2> friction_only(double cutoff) {
+  return DpdModel<2>(1, {DpdParameters{.a = 0.0, .gamma = 4.5, .s = 0.5, .cutoff = cutoff}});
+}
+
+// Of a particle that spins: steep, so that what a scheme lacks shows although friction is nearly the same in all directions.
+DpdModel<2> turning_friction() {
   return DpdModel<2>(
-      1, {DpdParameters{
-             .a = 0.0, .gamma = 4.5, .gamma_perp = gamma_perp, .s = 0.5, .cutoff = cutoff}});
+      1, {DpdParameters{.a = 0.0, .gamma = 9.0, .gamma_perp = 9.0, .s = 4.0, .cutoff = 1.8}});
 }
 
 // --- a free particle in a harmonic trap, strong friction in its middle ---
@@ -82,19 +86,24 @@ struct TrapRun {
   std::optional<Spin> spin = {};  ///< then friction across lines of centres, too
 };
 
-// Fraction of the time spent closer than `reach` to the centre, relative to 1 - exp(-trap reach^2/2).
+// Fraction of the time spent closer than `reach` to the centre, relative to 1 - exp(-trap reach^2/2). With spin the mean of
+// exp(-r^2/(2 reach^2)) over its exact value: half the standard error for the same run.
 double population(const TrapRun& run) {
   Particles<2> particles;
   if (run.spin) particles.spin_of_species = {*run.spin};
+  std::uint64_t copies = 0;
   for_each_centre([&](const Vec<2>& c) {
-    particles.add(c + Vec<2>{{0.3, 0.2}}, 0);
+    // With spin as they lie in equilibrium.
+    const auto w = CounterRandom(7, Stream::probe).normals(0, 0, copies++, 0);
+    particles.add(
+        c + (run.spin ? std::sqrt(1.0 / trap) * Vec<2>{{w[0], w[1]}} : Vec<2>{{0.3, 0.2}}), 0);
     particles.add(c, 0, odpd::Group::wall(0));  // strong friction close by
     for (int k = 0; k < 8; ++k) {               // a ring that holds it in every direction
       const double angle = k * std::numbers::pi / 4.0;
       particles.add(c + 1.2 * Vec<2>{{std::cos(angle), std::sin(angle)}}, 0, odpd::Group::wall(0));
     }
   });
-  const DpdModel<2> model = friction_only(3.0, run.spin ? 4.5 : 0.0);
+  const DpdModel<2> model = run.spin ? turning_friction() : friction_only(3.0);
   const Traps traps({.mass = run.mass});
   Dynamics<2> dynamics(toy_box(), particles, model, traps,
                        make_solver({.name = "pcg", .tolerance = 1e-9}), DynamicsSettings{});
@@ -114,10 +123,16 @@ double population(const TrapRun& run) {
     for (std::size_t i = 0; i < particles.position.size(); ++i) {
       if (!particles.is_free(i)) continue;
       all += 1.0;
-      inside += norm(particles.position[i] - centre_of(particles.position[i])) < reach ? 1.0 : 0.0;
+      const double away = norm(particles.position[i] - centre_of(particles.position[i])) / reach;
+      if (run.spin) {
+        inside += std::exp(-0.5 * away * away);
+      } else {
+        inside += away < 1.0 ? 1.0 : 0.0;
+      }
     }
   }
-  return inside / all / (1.0 - std::exp(-0.5 * trap * reach * reach));
+  const double narrow = trap * reach * reach;
+  return inside / all / (run.spin ? narrow / (1.0 + narrow) : 1.0 - std::exp(-0.5 * narrow));
 }
 double population(const std::string& scheme, std::int64_t steps, double mass = 0.0) {
   return population(TrapRun{scheme, steps, mass});
@@ -142,21 +157,28 @@ TEST(DriftToy, SoAreSchemesWithMass) {
 // Measured: 0.80, ten standard errors (1.5 % over half the time) beyond this bound's distance from 1.
 TEST(DriftToy, EulerIsRejected) { EXPECT_LT(population("euler", 3000), 0.88); }
 
-// The same particle with a lever radius, which friction across the lines of centres turns: its spin is one more unknown.
+// The same particle with a lever radius, which friction across lines of centres turns: its spin is one more unknown. A standard error of
+// 0.7 % over t = 20; measured 1.0005 to 1.012.
+double spinning_population(const std::string& scheme, std::int64_t steps, double mass = 0.0) {
+  return population({scheme, steps, mass, Spin{0.5, 0.1 * mass}});
+}
+
 TEST(SpinDriftToy, SchemesWithTheDriftAreExact) {
   for (const char* scheme : {"trapezoidal", "midpoint", "extrapolated"})
-    EXPECT_NEAR(population({scheme, 6000, 0.0, Spin{0.5, 0.0}}), 1.0, 0.03) << scheme;
+    EXPECT_NEAR(spinning_population(scheme, 2000), 1.0, 0.03) << scheme;
 }
 
 TEST(SpinDriftToy, SoAreSchemesWithInertiaOrLittleOfIt) {
-  EXPECT_NEAR(population({"shardlow", 6000, 0.1, Spin{0.5, 0.01}}), 1.0, 0.03);
+  EXPECT_NEAR(spinning_population("shardlow", 2000, 0.1), 1.0, 0.03);
   for (const double mass : {0.1, 1e-4})
-    EXPECT_NEAR(population({"trapezoidal", 6000, mass, Spin{0.5, 0.1 * mass}}), 1.0, 0.03) << mass;
+    EXPECT_NEAR(spinning_population("trapezoidal", 2000, mass), 1.0, 0.03) << mass;
 }
 
+// Measured: 1.47 and 1.12. Nearly the same friction in all directions that grows towards the centre gathers particles there, where the drift
+// is missing.
 TEST(SpinDriftToy, ReprojectedNoiseAndEulerAreRejected) {
-  EXPECT_GT(population({"reprojected", 2000, 0.0, Spin{0.5, 0.0}}), 1.3);
-  EXPECT_LT(population({"euler", 3000, 0.0, Spin{0.5, 0.0}}), 0.9);
+  EXPECT_GT(spinning_population("reprojected", 1500), 1.3);
+  EXPECT_GT(spinning_population("euler", 1500), 1.07);
 }
 
 // --- a rigid rotor: one unknown, its angle; the tip at distance `arm` feels frozen particles ---

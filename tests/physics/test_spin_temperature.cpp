@@ -1,6 +1,8 @@
 // A fluid of particles that spin: kT/m and kT/I are the variances of velocities and angular velocities, whatever the mass.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support/spinning.h"
 
 namespace odpd {
@@ -39,10 +41,11 @@ SpinTemperatures spin_temperatures(const std::string& scheme, double mass, doubl
   return {t.moving / samples, t.turning / samples};
 }
 
-// Standard errors 0.3 to 0.4 %.
+// Standard errors 0.4 to 0.6 %. At zeta dt/m far above 1 velocities forget slowly, so steps shorten with the mass.
 TEST(SpinTemperature, IsThatOfTheNoiseAtEveryMass) {
   for (const double mass : {1.0, 0.03, 1e-3}) {
-    const SpinTemperatures t = spin_temperatures<2>("trapezoidal", mass, 0.01, 1500);
+    const SpinTemperatures t =
+        spin_temperatures<2>("trapezoidal", mass, std::min(0.01, 0.5 * mass), 1500);
     EXPECT_NEAR(t.moving, 1.0, 0.015) << mass;
     EXPECT_NEAR(t.turning, 1.0, 0.015) << mass;
   }
