@@ -66,6 +66,8 @@ expect_error 1 "$odpd" calibrate disks --radius --set fluid.mass=1.0 -- fluid.ma
 expect_error 1 "$odpd" calibrate disks --radius --set body.0.count=2 --set body.0.radius='[0.4, 0.5]' -- body.0.radius 'several radii'
 expect_error 1 "$odpd" calibrate disks --radius --eta 5.0 -- --radius --eta
 expect_error 1 "$odpd" calibrate disks --boxes 4 -- --boxes --radius
+expect_error 1 "$odpd" calibrate disks --radius --find cutoff -- --find --wanted
+expect_error 1 "$odpd" calibrate disks --radius --find cutoff --wanted 0.5 -- "key 'pair'" "there is no [[pair]] of 'fluid' with the fluid"
 expect_error 1 "$odpd" run disks --dry-run --set body.0.hydrodynamic_radius=-1.0 -- body.0.hydrodynamic_radius positive
 expect_error 1 "$odpd" run disks --dry-run --set body.0.hydrodynamic_radius=3.0 -- body.0.hydrodynamic_radius 28.2743 'odpd calibrate --radius'
 expect_error 1 "$odpd" run disks --dry-run --set body.0.excluded_volume=25.0 -- body.0.excluded_volume 'of the 25 of space'
