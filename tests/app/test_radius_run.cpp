@@ -94,7 +94,7 @@ TEST(RadiusRun, TakesFluidAndBodyOfACase) {
 }
 
 // A colloid of one particle that spins: its own cutoff sets how far it reaches, the fluid's sets the grid of the pressure. Its radii by drag and
-// by torque agree; with a grid by the larger cutoff, or a pressure of its own, they would not.
+// by torque agree, as a pressure makes the flow around it Stokes flow.
 TEST(RadiusRun, OfOneParticle) {
   const MeasuredBody m = body_of(case_with(
       "density = 4.0\na = 18.5\ngamma = 4.5\n",
