@@ -61,7 +61,7 @@ void DofMap<D>::set(std::size_t b, const Vec<D>& linear, const Vec<D>& angular,
 
 template <int D>
 Share DofMap<D>::share() const {
-  if (spins() == 0) return node_share();
+  if (!any_spin_) return node_share();
   if (owned_.ranks->size() > 1)
     throw SolverError(
         "particles that spin (lever_radius) run on one rank so far: run the case on one");

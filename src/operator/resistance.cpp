@@ -364,6 +364,8 @@ const BlockCsr& Resistance<D>::matrix() const {
 
 template double relative_determinant<2>(const double*);
 template double relative_determinant<3>(const double*);
+template double relative_determinant<4>(const double*);
+template double relative_determinant<6>(const double*);
 template class Resistance<2>;
 template class Resistance<3>;
 

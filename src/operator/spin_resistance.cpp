@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -106,23 +107,59 @@ void SpinResistance<D>::sum_diagonal(const DofMap<D>& dofs, double inertia) {
 }
 
 template <int D>
-void SpinResistance<D>::check_spins(const DofMap<D>& dofs, const Particles<D>& particles) const {
-  constexpr double singular = 1e-12;
-  for (std::size_t s = 0; s < length_.size(); ++s) {
-    Block block = diagonal_[s];
-    for (std::size_t c = turns; c < D; ++c) block[c * D + c] = block[0];  // unused
-    if (relative_determinant<D>(block.data()) > singular) continue;
-    const auto p = index(dofs.spin_particles()[s]);
-    throw SolverError(
-        fmt::format(
-            "particle {} can spin without friction: it has no moment of inertia, and no "
-            "neighbours, "
-            "or in 3D those on one line with it alone, with friction across the line of centres "
-            "(gamma_perp). Cures: a moment of inertia (fluid.mass and a species' moment), a higher "
-            "density, or a larger cutoff",
-            particles.id[p]),
-        SolverError::Cause::singular);
+auto SpinResistance<D>::particle_block(std::size_t row) const -> ParticleBlock {
+  constexpr std::size_t freedoms = 2 * D;
+  ParticleBlock m{};
+  const auto& velocity = velocities_.mobile().diagonal()[row];
+  const auto spin = index(spin_of_[row]);
+  for (std::size_t r = 0; r < D; ++r)
+    for (std::size_t c = 0; c < D; ++c) {
+      m[r * freedoms + c] = velocity[r * D + c];
+      m[(D + r) * freedoms + D + c] = diagonal_[spin][r * D + c];
+    }
+  for (const Link& link : links(row)) {
+    const Block turn = cross_matrix<D>(link.e);
+    for (std::size_t r = 0; r < D; ++r)
+      for (std::size_t c = 0; c < D; ++c) {
+        const double entry = link.zeta_perp * link.own / length_[spin] * turn[r * D + c];
+        m[r * freedoms + D + c] += entry;
+        m[(D + c) * freedoms + r] += entry;
+      }
   }
+  return m;
+}
+
+template <int D>
+void SpinResistance<D>::check_spins(const DofMap<D>& dofs, const Particles<D>& particles) const {
+  // Below this a block inverse would amplify rounding beyond any tolerance in use.
+  constexpr double singular = 1e-12;
+  constexpr std::size_t freedoms = 2 * D;
+  std::atomic<std::int64_t> first{dofs.mobile()};
+  parallel_for(dofs.mobile(), [&](std::int64_t mobile) {
+    if (spin_of_[index(mobile)] < 0) return;
+    ParticleBlock block = particle_block(index(mobile));
+    // With a unit diagonal, as the unit of a spin is arbitrary.
+    std::array<double, freedoms> root;
+    bool loose = false;
+    for (std::size_t c = 0; c < freedoms; ++c) {
+      root[c] = std::sqrt(block[c * freedoms + c]);
+      loose = loose || !(root[c] > 0.0);
+    }
+    for (std::size_t r = 0; r < freedoms && !loose; ++r)
+      for (std::size_t c = 0; c < freedoms; ++c) block[r * freedoms + c] /= root[r] * root[c];
+    if (loose || relative_determinant<2 * D>(block.data()) <= singular) lower(first, mobile);
+  });
+  if (first == dofs.mobile()) return;
+  const std::int32_t p = dofs.particle_of(index(first.load()));
+  throw SolverError(
+      fmt::format(
+          "particle {} can spin, or roll along its neighbours, without friction: too few of these, "
+          "{}, "
+          "resist it across the line of centres (gamma_perp), and it has no inertia that would. "
+          "Cures: a moment of inertia (fluid.mass and a species' moment), a higher density, or a "
+          "larger cutoff",
+          particles.id[index(p)], links(index(first.load())).size()),
+      SolverError::Cause::singular);
 }
 
 // W of a motion u = W x x by the links along which it moves something.
@@ -151,6 +188,25 @@ Vec<D> SpinResistance<D>::turning_of(std::span<const double> u) const {
   Vec<D> found{};
   for (int c = 0; c < parts; ++c) found[c] = w(c);
   return found;
+}
+
+// What holds a cluster by few links with friction across lets it roll about these, which is no motion of this kind.
+template <int D>
+void SpinResistance<D>::refuse_resisted(const std::vector<double>& motion) const {
+  constexpr double none = 1e-9;
+  std::vector<double> met(motion.size()), blocks(motion.size() * D);
+  apply(motion, met);
+  block_diagonal(blocks);
+  double most = 0.0;
+  for (std::size_t k = 0; k < motion.size(); ++k)
+    most += blocks[k * D + k % D] * motion[k] * motion[k];
+  if (inner_product(motion, met) <= none * most) return;
+  throw SolverError(
+      fmt::format("a group of particles hangs on particles of known velocity by so few links with "
+                  "friction across them that it may roll about these without friction, so R may be "
+                  "singular. Cures: {}, or mass (fluid.mass) and a species' moment",
+                  drag_cure),
+      SolverError::Cause::singular);
 }
 
 template <int D>
@@ -182,6 +238,7 @@ void SpinResistance<D>::find_null_motions() {
     }
     const double size = norm(motion);
     for (double& value : motion) value /= size;
+    refuse_resisted(motion);
     null_motions_.push_back(std::move(motion));
   }
 }

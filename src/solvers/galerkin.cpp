@@ -35,7 +35,10 @@ class Elements {
  public:
   Elements(const GridShape<D>& shape, const Resistance<D>& resistance,
            const RigidResistance<D>* rigid, double moment, const SpinResistance<D>* spins)
-      : shape_(shape), resistance_(resistance), rigid_(rigid), spins_(spins) {
+      : shape_(shape),
+        resistance_(resistance),
+        rigid_(rigid),
+        spins_(resistance.transverse() ? spins : nullptr) {
     if (rigid != nullptr) stiffen(moment / (2.0 * D * (D + 2)));
     std::int64_t cells = 1;
     for (int c = 0; c < 4; ++c) {
@@ -51,7 +54,7 @@ class Elements {
     place_nodes();
     if (!resistance.g().empty()) edges_.g = resistance.g().front().x.data();
     if (resistance.transverse()) edges_.across = &resistance.across().front().zeta_perp;
-    if (spins != nullptr) leave_along();
+    if (spins_ != nullptr) leave_along();
   }
   void add_node(std::int64_t n);
   /// What all ranks added.
@@ -96,11 +99,6 @@ class Elements {
           }
     return moments;
   }
-  /// Friction across e sees a spin.
-  bool has_levers(std::size_t node, const typename Resistance<D>::Link& link) const {
-    return spins_ != nullptr && resistance_.across(link).zeta_perp > 0.0 &&
-           (spins_->spin_of(node) >= 0 || spins_->spin_of(index(link.node)) >= 0);
-  }
   /// Leaves of edges with levers the friction along them.
   void leave_along() {
     g_.assign(resistance_.g().begin(), resistance_.g().end());
@@ -108,7 +106,7 @@ class Elements {
     edges_ = {g_.front().x.data(), &across_.front().zeta_perp};
     parallel_for(resistance_.nodes(), [&](std::int64_t n) {
       for (const auto& link : resistance_.links(index(n))) {
-        if (link.node < n || !has_levers(index(n), link)) continue;
+        if (link.node < n || !resistance_.sees_spins(link)) continue;
         Vec<D>& g = g_[index(link.edge)];
         auto& across = across_[index(link.edge)];
         const double along = across.sign * dot(g, g) + across.zeta_perp;
@@ -125,7 +123,7 @@ class Elements {
   double turned(std::size_t node) const {
     double sum = 0.0;
     for (const auto& link : resistance_.links(node)) {
-      if (!has_levers(node, link)) continue;
+      if (!resistance_.sees_spins(link)) continue;
       const Vec<D> d = resistance_.box().separation(resistance_.position(node),
                                                     resistance_.position(index(link.node)));
       sum += 0.5 * resistance_.across(link).zeta_perp * dot(d, d);
@@ -146,11 +144,11 @@ class Elements {
   const GridShape<D>& shape_;
   const Resistance<D>& resistance_;
   const RigidResistance<D>* rigid_;
-  const SpinResistance<D>* spins_;
-  std::vector<float> stiffness_;  // per body
-  Moments inside_{};              // of a constituent
-  Moments turning_{};             // of zeta_perp r^2 of edges with levers
-  std::vector<Vec<D>> g_;         // of all edges, where some have levers: the friction left to them
+  const SpinResistance<D>* spins_;  // null where no friction sees a spin
+  std::vector<float> stiffness_;    // per body
+  Moments inside_{};                // of a constituent
+  Moments turning_{};               // of zeta_perp r^2 of edges with levers
+  std::vector<Vec<D>> g_;  // of all edges, where some have levers: the friction left to them
   std::vector<typename Resistance<D>::Across> across_;
   ElementView view_{};
   EdgeView edges_{};

@@ -7,7 +7,6 @@
 
 #include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
-#include "odpd/core/rotation.h"
 #include "odpd/solvers/preconditioner.h"
 
 namespace odpd {
@@ -17,33 +16,8 @@ constexpr std::int64_t spins_per_sum = 1024;  // whatever the threads
 }
 
 template <int D>
-auto SpinBlocks<D>::block(const SpinResistance<D>& resistance, std::size_t row) -> Whole {
-  Whole m{};
-  const auto& velocity = resistance.velocities().mobile().diagonal()[row];
-  const auto spin = index(resistance.spin_of(row));
-  const auto& own = resistance.spin_diagonal()[spin];
-  for (std::size_t r = 0; r < D; ++r)
-    for (std::size_t c = 0; c < D; ++c) {
-      m[r * freedoms + c] = velocity[r * D + c];
-      m[(D + r) * freedoms + D + c] = own[r * D + c];
-    }
-  for (const auto& link : resistance.links(row))
-    for (std::size_t c = 0; c < D; ++c) {
-      Vec<D> unit{};
-      unit.x[c] = 1.0;
-      const Vec<D> slip = swing(unit, link.e);
-      for (std::size_t r = 0; r < D; ++r) {
-        const double entry = -link.zeta_perp * link.own / resistance.length(spin) * slip.x[r];
-        m[r * freedoms + D + c] += entry;
-        m[(D + c) * freedoms + r] += entry;
-      }
-    }
-  return m;
-}
-
-template <int D>
 auto SpinBlocks<D>::inverse(const SpinResistance<D>& resistance, std::size_t row) -> Whole {
-  Whole m = block(resistance, row);
+  Whole m = resistance.particle_block(row);
   if (!invert_definite(m, static_cast<int>(freedoms)))
     m.fill(std::numeric_limits<double>::quiet_NaN());
   return m;

@@ -43,7 +43,7 @@ class SpinResistance : public System {
 
   /// As Resistance::slide.
   void slide(const Box<D>& box) { velocities_.slide(box); }
-  /// As RigidResistance::rebuild. Throws SolverError also for a particle without moment of inertia that can spin without friction.
+  /// As RigidResistance::rebuild. Throws SolverError also for a particle that can spin, or roll along its neighbours, without friction.
   void rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs, const Particles<D>& particles,
                std::span<const Vec<D>> positions, std::span<const Vec<D>> arms,
                const Shifts& shifts, double stiffness_time = 0.0, double bond_time = 0.0);
@@ -70,6 +70,11 @@ class SpinResistance : public System {
   }
   /// Diagonal block of each spin, in y.
   std::span<const Block> spin_diagonal() const { return diagonal_; }
+
+  /// 2D x 2D, row-major, velocity before spin (in y).
+  using ParticleBlock = std::array<double, index(4 * D * D)>;
+  /// Diagonal block of all unknowns of a mobile particle that spins by itself.
+  ParticleBlock particle_block(std::size_t row) const;
 
   // In place, size() numbers; as those of RigidResistance.
 
@@ -101,6 +106,7 @@ class SpinResistance : public System {
   void sum_diagonal(const DofMap<D>& dofs, double inertia);
   void check_spins(const DofMap<D>& dofs, const Particles<D>& particles) const;
   Vec<D> turning_of(std::span<const double> u) const;
+  void refuse_resisted(const std::vector<double>& motion) const;
   void find_null_motions();
   std::span<const double> of_velocities(std::span<const double> x) const {
     return x.subspan(index(spins()) * D);

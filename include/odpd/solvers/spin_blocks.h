@@ -20,11 +20,6 @@ class SpinBlocks {
  public:
   using Block = typename Resistance<D>::Block;
   static constexpr std::size_t freedoms = 2 * D;
-  /// 2D x 2D, row-major, velocity before spin.
-  using Whole = std::array<double, freedoms * freedoms>;
-
-  /// D of this row's particle, which spins.
-  static Whole block(const SpinResistance<D>& resistance, std::size_t row);
 
   /// Calls keep(place, block) with the diagonal blocks of D^-1 at the places of velocity and spin, NaN where D is singular.
   template <class Keep>
@@ -43,6 +38,7 @@ class SpinBlocks {
   std::int64_t bytes() const;
 
  private:
+  using Whole = typename SpinResistance<D>::ParticleBlock;
   using Pair = std::array<float, freedoms>;
   static Whole inverse(const SpinResistance<D>& resistance, std::size_t row);
   void resize(std::int64_t spins, std::int64_t first_place);
