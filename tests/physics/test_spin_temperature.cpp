@@ -57,12 +57,14 @@ TEST(SpinTemperature, IsThatOfTheNoiseInSpaceToo) {
   EXPECT_NEAR(t.turning, 1.0, 0.015);
 }
 
-TEST(SpinTemperature, ExplicitSchemesHoldItAtShortSteps) {
-  for (const char* scheme : {"shardlow", "velocity-verlet"}) {
-    const SpinTemperatures t = spin_temperatures<2>(scheme, 1.0, 0.004, 4000);
-    EXPECT_NEAR(t.moving, 1.0, 0.02) << scheme;
-    EXPECT_NEAR(t.turning, 1.0, 0.02) << scheme;
-  }
+// Standard errors 0.3 %. With the mass of a pair that cannot turn, shardlow has 1.027 and 1.064.
+TEST(SpinTemperature, ExplicitSchemesHoldIt) {
+  const SpinTemperatures split = spin_temperatures<2>("shardlow", 1.0, 0.02, 1500);
+  EXPECT_NEAR(split.moving, 1.0, 0.015);
+  EXPECT_NEAR(split.turning, 1.0, 0.015);
+  const SpinTemperatures verlet = spin_temperatures<2>("velocity-verlet", 1.0, 0.004, 3000);
+  EXPECT_NEAR(verlet.moving, 1.0, 0.02);
+  EXPECT_NEAR(verlet.turning, 1.0, 0.02);
 }
 
 }  // namespace
