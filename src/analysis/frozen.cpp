@@ -91,7 +91,8 @@ FlowAnswer answer_to_flow(const Particles<D>& particles, const StepRecord<D>& re
   for (Vec<D>& v : u.velocity) v = -1.0 * v;
   for (Vec<D>& w : u.spin) w = -1.0 * w;
   const auto slip = [&](std::size_t k) {
-    return affine(k) + network.inner_slip(k, u.velocity, u.spin);
+    return affine(k) + u.velocity[index(network.i[k])] - u.velocity[index(network.j[k])] +
+           network.spin_slip(k, u.spin);
   };
   double of_rates = 0.0;
   if (pressure != nullptr) {

@@ -99,8 +99,12 @@ struct PairNetwork {
   Vec<D> inner_slip(std::size_t k, std::span<const Vec<D>> velocity,
                     std::span<const Vec<D>> spin = {}) const {
     const Vec<D> v = velocity[index(i[k])] - velocity[index(j[k])];
-    if (spin.empty() || lever_i.empty()) return v;
-    return v - swing(lever_i[k] * spin[index(i[k])] + lever_j[k] * spin[index(j[k])], e[k]);
+    return spin.empty() ? v : v + spin_slip(k, spin);
+  }
+  /// e x (l_i w_i + l_j w_j); 0 where nobody spins.
+  Vec<D> spin_slip(std::size_t k, std::span<const Vec<D>> spin) const {
+    if (spin.empty() || lever_i.empty()) return {};
+    return -1.0 * swing(lever_i[k] * spin[index(i[k])] + lever_j[k] * spin[index(j[k])], e[k]);
   }
   /// None of them is a bond at first.
   void resize(std::int64_t edges);
