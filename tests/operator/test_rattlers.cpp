@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "odpd/operator/resistance.h"
+#include "odpd/operator/spin_resistance.h"
+#include "odpd/pairs/levers.h"
 #include "support/dimensions.h"
 #include "support/errors.h"
 #include "support/network.h"
@@ -36,6 +37,18 @@ struct Lonely {
     Resistance<D> resistance(fluid.box);
     resistance.rebuild(fluid.network, DofMap<D>(fluid.particles), fluid.particles,
                        fluid.particles.position, shift);
+  }
+  /// Where all spin, with friction across; `inertia`: 2 m/dt with m = 1 and this moment of inertia.
+  void rebuild_spins(double inertia, double moment) {
+    fluid.particles.spin_of_species = {{.lever_radius = 0.4, .moment = moment}};
+    DpdParameters p;
+    p.gamma_perp = 2.0;
+    fluid.connect(DpdModel<D>(1, {p}));
+    odpd::write_levers(fluid.particles, fluid.network);
+    odpd::SpinResistance<D> resistance(fluid.box);
+    const DofMap<D> dofs(fluid.particles, 1.0);
+    resistance.rebuild(fluid.network, dofs, fluid.particles, fluid.particles.position, {},
+                       {.inertia = inertia});
   }
   /// The error names this particle, its neighbours and what helps; mass and a far friction cure it.
   void expect_rattler(std::int64_t id, int neighbours) {
@@ -126,6 +139,51 @@ TYPED_TEST(RattlerTest, TransverseFrictionIsACure) {
   DpdParameters p;
   p.gamma_perp = 0.5;
   EXPECT_NO_THROW(scene.rebuild(p, 0.0));
+}
+
+// Held by one neighbour, its blocks of velocity and of spin are regular, but it can roll along it; in 3D along two as well.
+TYPED_TEST(RattlerTest, SpinsRollAlongFewNeighbours) {
+  constexpr int D = TypeParam::D;
+  Lonely<D> scene;
+  EXPECT_NO_THROW(scene.rebuild_spins(0.0, 0.0)) << "the drop alone is sound";
+  const std::int64_t id = scene.add({});
+  const std::string who = "particle " + std::to_string(id) + " can spin, or roll";
+  for (int neighbours = 1; neighbours < D; ++neighbours) {
+    scene.add(along<D>(neighbours - 1, 0.5), true);
+    const std::string how_many = std::to_string(neighbours) + ", resist";
+    support::expect_error<odpd::SolverError>(
+        [&] { scene.rebuild_spins(0.0, 0.0); },
+        {who.c_str(), how_many.c_str(), "moment", "density", "cutoff"});
+    EXPECT_NO_THROW(scene.rebuild_spins(1e-2, 0.1)) << "inertia of both";
+  }
+  scene.add(along<D>(D - 1, 0.5), true);
+  EXPECT_NO_THROW(scene.rebuild_spins(0.0, 0.0)) << "neighbours on all sides";
+}
+
+// By one contact with what is held a cluster rolls about that point: it does not turn about the particle there, as it would without
+// spins.
+TYPED_TEST(RattlerTest, AClusterRollsAboutOneContact) {
+  constexpr int D = TypeParam::D;
+  Fluid<D> fluid{12.0, true};
+  const auto centre = support::uniform_vec<D>(6.0);
+  fluid.particles.add(centre, 0);
+  for (int c = 1; c < D; ++c)
+    for (const double side : {-0.3, 0.3})
+      fluid.particles.add(centre + along<D>(0, -0.5) + along<D>(c, side), 0);
+  fluid.particles.spin_of_species = {{.lever_radius = 0.4}};
+  const auto rebuild = [&] {
+    DpdParameters p;
+    p.gamma_perp = 2.0;
+    fluid.connect(DpdModel<D>(1, {p}));
+    odpd::write_levers(fluid.particles, fluid.network);
+    odpd::SpinResistance<D> resistance(fluid.box);
+    const DofMap<D> dofs(fluid.particles);
+    resistance.rebuild(fluid.network, dofs, fluid.particles, fluid.particles.position, {}, {});
+    return std::ssize(resistance.null_motions());
+  };
+  EXPECT_EQ(rebuild(), D == 2 ? 1 : 3) << "it floats: rotations";
+  fluid.particles.add(centre + along<D>(0, 0.9), 0, odpd::Group::wall(0));
+  support::expect_error<odpd::SolverError>([&] { rebuild(); }, {"may roll", "mass"});
 }
 
 }  // namespace
