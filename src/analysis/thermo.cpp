@@ -76,17 +76,6 @@ std::vector<Vec<D>> peculiar(const Stage<D>& stage, std::vector<Vec<D>> velocity
   return velocity;
 }
 
-// Half the curl of the flow of a sheared box: what particles turn with.
-template <int D>
-Vec<D> flow_spin(const Box<D>& box) {
-  Vec<D> half{};
-  if (!box.shear) return half;
-  Vec<D> flow{}, gradient{};
-  flow[box.shear->flow] = 0.5 * box.sliding / box.size[box.shear->gradient];
-  gradient[box.shear->gradient] = 1.0;
-  return torque(gradient, flow);
-}
-
 template <int D>
 double moment_of(const Particles<D>& particles, std::size_t i) {
   return particles.spins(i) ? particles.spin_of_species[index(particles.species[i])].moment : 0.0;
@@ -96,7 +85,7 @@ double moment_of(const Particles<D>& particles, std::size_t i) {
 template <int D>
 double rotational_temperature(const Particles<D>& particles, const StepRecord<D>& record) {
   if (record.w_start.empty()) return std::nan("");
-  const Vec<D> mean = flow_spin(record.start.box);
+  const Vec<D> mean = record.start.box.flow_spin();
   const Share own = particles.owned();
   std::array<double, 2> sum{};  // of I w^2, of components
   for (std::size_t i = 0; i < record.w_start.size(); ++i) {

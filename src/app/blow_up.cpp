@@ -224,7 +224,34 @@ double BlowUpWatch<D>::friction_limit(const IntegratorSettings& integrator,
   trace = own.ranks->sum(trace);
   const double friction =
       trace / (D * static_cast<double>(scene_.particles().free_count())) + scene_.settings().zeta_0;
-  return scene_.settings().mass / friction;
+  const double turning = spin_relaxation(stage);
+  const double linear = scene_.settings().mass / friction;
+  return turning > 0.0 ? std::min(linear, 1.0 / turning) : linear;
+}
+
+// The mean rate at which friction stops spins, l^2 zeta_perp over the moment of inertia; 0 where nobody has one.
+template <int D>
+double BlowUpWatch<D>::spin_relaxation(const Stage<D>& stage) const {
+  const Particles<D>& particles = scene_.particles();
+  const PairNetwork<D>& network = stage.network;
+  const Share own = particles.owned();
+  // Of e x, over the components of a spin.
+  constexpr double across = static_cast<double>(D - 1) / rotation_components<D>;
+  std::array<double, 2> sum{};  // of rates, of spins
+  for (auto i = index(own.first); i < index(own.last) && !network.lever_i.empty(); ++i) {
+    if (!particles.spins(i)) continue;
+    const double moment = particles.spin_of_species[index(particles.species[i])].moment;
+    if (moment == 0.0) continue;
+    for (const std::int32_t edge : network.edges_of(static_cast<std::int64_t>(i))) {
+      const auto k = index(edge);
+      const double arm =
+          network.i[k] == static_cast<std::int32_t>(i) ? network.lever_i[k] : network.lever_j[k];
+      sum[0] += across * network.zeta_perp[k] * arm * arm / moment;
+    }
+    sum[1] += 1.0;
+  }
+  own.ranks->sum(std::span(sum));
+  return sum[1] > 0.0 ? sum[0] / sum[1] : 0.0;
 }
 
 template <int D>

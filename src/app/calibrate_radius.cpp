@@ -194,22 +194,37 @@ RadiusRecord read_record(const CalibrateRadiusOptions& options) {
                                  : read_body_record<3>(options, config, settings);
 }
 
-// Which [[pair]] is that of the fluid with the body that is measured.
+// Which [[pair]] is that of the fluid with the body that is measured: not one with other colloids, of which the fluid has none.
 std::size_t pair_with_fluid(const CalibrateRadiusOptions& options, const Config& config,
                             const MeasuredBody& body) {
   const auto pairs = config.tables("pair");
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const std::vector<std::string> ends = pairs[k].texts("species");
-    if (std::count(ends.begin(), ends.end(), body.own_species) == 1) return k;
+    if (std::count(ends.begin(), ends.end(), body.own_species) != 1) continue;
+    const std::string& other = ends[ends[0] == body.own_species ? 1 : 0];
+    const auto species = config.tables("species");
+    if (std::none_of(species.begin(), species.end(), [&](const Config& s) {
+          return s.text("name") == other && s.has("count") && s.integer("count") == 0;
+        }))
+      return k;
   }
   config.fail("pair",
               fmt::format("--find {}: there is no [[pair]] of '{}' with the fluid: give one",
                           options.find, body.own_species));
 }
 
+// The same with the seconds that are left of the whole.
+CalibrateRadiusOptions left_of(const CalibrateRadiusOptions& options, const Stopwatch& watch) {
+  CalibrateRadiusOptions left = options;
+  if (left.limit_seconds > 0.0)
+    left.limit_seconds = std::max(1e-3, left.limit_seconds - watch.seconds());
+  return left;
+}
+
 // By secants: the first step is as if a cutoff or core were the radius but for a constant, a friction in proportion. Nothing where
 // it ended early.
 std::optional<std::string> find_value(const CalibrateRadiusOptions& options) {
+  const Stopwatch watch;
   RadiusRecord record = read_record(options);
   const Config config = open_case(options.case_path, options.overrides);
   const std::size_t pair = pair_with_fluid(options, config, record.body);
@@ -218,7 +233,7 @@ std::optional<std::string> find_value(const CalibrateRadiusOptions& options) {
   double x = config.tables("pair")[pair].positive(options.find), last_x = 0.0, last_radius = 0.0;
   constexpr int most_trials = 8;
   for (int trial = 0; trial < most_trials; ++trial) {
-    CalibrateRadiusOptions with = options;
+    CalibrateRadiusOptions with = left_of(options, watch);
     with.overrides.push_back(fmt::format("{}={}", path, x));
     RadiusRecord here = read_record(with);
     here.fluid = record.fluid;
@@ -283,10 +298,11 @@ std::string conclusion(const RadiusRecord& r) {
 int calibrate_radius(const CalibrateRadiusOptions& options) {
   if (!options.find.empty()) {
     catch_signals();
+    const Stopwatch watch;
     const std::optional<std::string> found = find_value(options);
     if (!found && interrupted()) return 130;
     if (!found) throw Error("--limit-seconds is over before a value is found", 4);
-    CalibrateRadiusOptions with = options;
+    CalibrateRadiusOptions with = left_of(options, watch);
     with.find.clear();
     with.overrides.push_back(*found);
     fmt::print("Found --set {}\n", *found);

@@ -45,15 +45,17 @@ std::string tables_of(const Config& config, const std::string& name) {
 std::string species_text(const std::vector<SpeciesSettings>& species) {
   std::string text;
   double counted = 0.0;
+  const bool spin = std::any_of(species.begin(), species.end(),
+                                [](const SpeciesSettings& s) { return s.lever_radius > 0.0; });
   for (const SpeciesSettings& s : species) counted += std::max(0.0, static_cast<double>(s.count));
   for (const SpeciesSettings& s : species)
     text += fmt::format("[[species]]\nname = \"{}\"\n", s.name) +
-            (s.lever_radius > 0.0 ? fmt::format("lever_radius = {}\n", s.lever_radius) : "") +
+            (spin ? fmt::format("lever_radius = {}\n", s.lever_radius) : "") +
             (s.count == 0  ? "count = 0\n"
              : s.count > 0 ? fmt::format("fraction = {}\n", static_cast<double>(s.count) / counted)
              : s.fraction < 1.0 ? fmt::format("fraction = {}\n", s.fraction)
                                 : "");
-  return species.size() > 1 ? text : std::string{};
+  return species.size() > 1 || spin ? text : std::string{};
 }
 
 // Keys of [fluid] that friction across lines of centres needs.

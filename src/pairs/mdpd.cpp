@@ -77,7 +77,7 @@ void MdpdModel<D>::write_edges(const PairList<D>& list, const Box<D>& box,
   const FrictionParameters& f = p.friction;
   const bool alike =
       std::all_of(table_.begin(), table_.end(), [&](const Entry& entry) { return entry.of == p; });
-  if (!alike || !(f.s == 0.5 || f.s == 1.0 || f.s == 2.0))
+  if (!alike || f.core > 0.0 || !(f.s == 0.5 || f.s == 1.0 || f.s == 2.0))
     return write_density_terms(
         densities_, [this](double r, Site i, Site j) { return terms(r, i, j); }, cutoff_, list, box,
         positions, particles, network);

@@ -27,11 +27,13 @@ void Particles<D>::carry_inertia() {
 
 template <int D>
 void Particles<D>::carry_spins(bool inertia) {
-  if (spinning_) return;
-  spinning_ = true;
-  spin.assign(position.size(), Vec<D>{});
-  fields_.add("spin", &spin);
-  if (!inertia) return;
+  if (!spinning_) {
+    spinning_ = true;
+    spin.assign(position.size(), Vec<D>{});
+    fields_.add("spin", &spin);
+  }
+  if (!inertia || turning_) return;
+  turning_ = true;
   end_spin.assign(position.size(), Vec<D>{});
   fields_.add("end_spin", &end_spin);
 }

@@ -81,6 +81,8 @@ void Scene<D>::start_flow() {
     v[shear.flow] +=
         (particles_.image[i][up] - particles_.moving_image(i)[up]) * settings_.box.sliding;
   }
+  for (std::size_t i = 0; i < particles_.end_spin.size(); ++i)
+    if (particles_.spins(i)) particles_.end_spin[i] += settings_.box.flow_spin();
 }
 
 // The particles are all there; those of molecules come last.

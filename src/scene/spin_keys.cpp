@@ -79,6 +79,11 @@ void check_spins(const Config& config, const SceneSettings<D>& scene) {
                   "symmetric (2.45 in yx, 0.00 in xy of the same flow). Let them spin with "
                   "fluid.lever_radius, as 0.5, or insist with fluid.antisymmetric_stress = true");
     }
+    // Of particles alone: those of walls and bodies have no edges among themselves.
+    const bool of_fluid = species[a].count != 0 && species[a].fraction > 0.0;
+    if (scene.model->lever_radius() > 0.0 && of_fluid && !spins(species[a]) &&
+        turns(*scene.model, a, a))
+      fail_radius("is 0, but fluid.spin = true wants all of the fluid to spin: leave it out");
     if (!spins(species[a])) continue;
     if (!turned)
       fail_radius(fmt::format(

@@ -59,6 +59,18 @@ for scheme in midpoint extrapolated implicit euler monte-carlo mass:trapezoidal 
   expect_exit 0 run many --threads 1 "${settings[@]}" --restart "$name-parts/checkpoint.h5"
   same_run "$name" "$name-parts"
 done
+
+# --- particles that spin: angular velocities, those at the end of a step and those that a scheme keeps ---
+for scheme in trapezoidal extrapolated mass:trapezoidal mass:extrapolated mass:velocity-verlet mass:shardlow; do
+  settings=(--set "integrator.name=${scheme#mass:}" --set fluid.gamma_perp=2.0 --set fluid.lever_radius=0.4)
+  [[ $scheme == mass:* ]] && settings+=(--set fluid.mass=0.2)
+  name=spins_${scheme/:/_}
+  expect_exit 0 run many --threads 1 "${settings[@]}" --out "$name"
+  expect_exit 0 run many --threads 2 "${settings[@]}" --set run.duration=0.05 --out "$name-parts"
+  expect_exit 0 run many --threads 1 "${settings[@]}" --restart "$name-parts/checkpoint.h5"
+  same_run "$name" "$name-parts"
+done
+
 # --- molecules: their bonds follow the identities, through a reordering, a restart and a change of threads ---
 cp -r many bonded
 cat >>bonded/case.toml <<'CASE'

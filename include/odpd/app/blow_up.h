@@ -67,6 +67,7 @@ class BlowUpWatch {
                                  const std::vector<double>& force_squared,
                                  const std::vector<double>& laplacian);
   std::optional<double> repulsion_limit() const;
+  double spin_relaxation(const Stage<D>& stage) const;
   double friction_limit(const IntegratorSettings& integrator, const Stage<D>& stage) const;
   double fluid_depth() const;
 

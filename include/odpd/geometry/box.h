@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "odpd/core/index.h"
+#include "odpd/core/rotation.h"
 #include "odpd/core/vec.h"
 
 namespace odpd {
@@ -59,6 +60,14 @@ struct Box {
     Vec<D> u{};
     if (shear) u[shear->flow] = sliding * (r[shear->gradient] / size[shear->gradient] - 0.5);
     return u;
+  }
+  /// Half the curl of the sheared flow, as an angular velocity: what particles that spin turn with.
+  Vec<D> flow_spin() const {
+    if (!shear) return {};
+    Vec<D> gradient{}, flow{};
+    gradient[shear->gradient] = 1.0;
+    flow[shear->flow] = 0.5 * sliding / size[shear->gradient];
+    return torque(gradient, flow);
   }
   /// How many boxes up along the gradient the nearest image of b is seen from a, for d = a - b of positions in the box. Its
   /// velocity is that of b plus so many times `sliding`. Only with shear.

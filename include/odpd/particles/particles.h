@@ -97,7 +97,8 @@ class Particles {
  private:
   mutable FieldTable<D> fields_;                                // `carry` adds to it
   mutable std::map<std::string, std::vector<Vec<D>>> carried_;  // by name
-  bool inertial_ = false, spinning_ = false;
+  bool inertial_ = false;
+  bool spinning_ = false, turning_ = false;  // carry_spins was called, and with inertia
   const Communicator* ranks_ = &Communicator::alone();
 };
 
