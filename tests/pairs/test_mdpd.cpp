@@ -1,6 +1,7 @@
 // Many-body DPD: its force in the usual form, its densities, its keys.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "odpd/core/quadrature.h"
@@ -56,6 +57,23 @@ TYPED_TEST(MdpdTest, ForceHasTheUsualForm) {
     EXPECT_NEAR(n.f_c[k], expected, 1e-11 * std::max(1.0, std::abs(expected)));
   }
   EXPECT_GT(between, 50);
+}
+
+// One kind of pair, that with a core too: its friction ends the fall of w outside of the core.
+TYPED_TEST(MdpdTest, FrictionOfOneKindOfPairTakesItsCore) {
+  constexpr int D = TypeParam::D;
+  support::Crowd<D> crowd(D == 2 ? 90 : 150, 3.2, true);
+  MdpdPair with_core;
+  with_core.friction.core = 0.4;
+  crowd.connect(
+      MdpdModel<D>({.B = 25.0, .r_d = 0.75}, 2, std::vector<MdpdPair>(4, with_core), 5.0));
+  const auto& n = crowd.network;
+  const odpd::FrictionParameters& f = with_core.friction;
+  ASSERT_GT(n.i.size(), 50u);
+  for (std::size_t k = 0; k < n.i.size(); ++k) {
+    const double x = std::clamp((f.cutoff - n.r[k]) / f.width(), 0.0, 1.0);
+    EXPECT_NEAR(n.zeta_par[k], f.gamma * std::pow(x, f.s), 1e-6) << n.r[k];
+  }
 }
 
 std::shared_ptr<const odpd::PairModel<2>> mdpd_of_keys(const std::string& fluid,
