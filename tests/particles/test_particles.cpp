@@ -146,6 +146,19 @@ TYPED_TEST(ParticlesTest, CarryColumnsOfOthers) {
   EXPECT_THROW(without.load(archive), odpd::IoError);
 }
 
+// Whoever asks for spins at first without inertia can still ask for them with inertia.
+TYPED_TEST(ParticlesTest, SpinsGetTheirEndOfStepWhenItIsAskedForLater) {
+  constexpr int D = TypeParam::D;
+  Particles<D> particles;
+  fill(particles, 4);
+  particles.carry_spins(false);
+  EXPECT_TRUE(particles.end_spin.empty());
+  particles.spin[2] = support::uniform_vec<D>(0.5);
+  particles.carry_spins(true);
+  EXPECT_EQ(particles.end_spin.size(), 4u);
+  EXPECT_EQ(particles.spin[2], support::uniform_vec<D>(0.5));
+}
+
 TYPED_TEST(ParticlesTest, EachHasOneOwner) {
   constexpr int D = TypeParam::D;
   std::atomic<int> found{0};
