@@ -126,6 +126,21 @@ TEST(RadiusRun, OfOneParticle) {
   EXPECT_NEAR(odpd::torque_radius(cell, viscosity).value / drag, 1.0, 0.1);
 }
 
+// What a species says of its spin is that of the scenes measured, a lever radius of 0 beside one of [fluid] too.
+TEST(RadiusRun, OfAFluidWhoseOwnSpeciesDoesNotSpin) {
+  const std::string colloid =
+      "[[species]]\nname = \"colloid\"\ncount = 0\n"
+      "[[pair]]\nspecies = [\"solvent\", \"colloid\"]\ncore = 1.0\ncutoff = 1.8\n"
+      "gamma_perp = 45.0\n"
+      "[[molecule]]\nname = \"ball\"\nspecies = \"colloid\"\nshape = \"particle\"\ncount = 1\n"
+      "clearance = 3.0\nexcluded_volume = 4.0\n";
+  const std::string fluid = "density = 4.0\na = 18.5\ngamma = 4.5\nlever_radius = 1.0\n";
+  const MeasuredBody m =
+      body_of(case_with(fluid, "[[species]]\nname = \"solvent\"\nlever_radius = 0.0\n" + colloid));
+  EXPECT_NE(m.species.find("name = \"solvent\"\nlever_radius = 0"), std::string::npos) << m.species;
+  EXPECT_NE(m.species.find("name = \"colloid\"\nlever_radius = 1"), std::string::npos) << m.species;
+}
+
 // The fluid between bodies that say what they take, without beads of molecules.
 TEST(RadiusRun, DensityOfTheFluidAlone) {
   const std::string disks =

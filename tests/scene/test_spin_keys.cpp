@@ -154,6 +154,12 @@ TEST(SpinKeys, SdpdSpinsAsOneFluid) {
          {"fluid.lever_radius", "another viscosity"});
   refuse({"fluid.form=classical", "fluid.spin=true", "fluid.lever_radius=0.0"},
          {"fluid.lever_radius", "fluid.spin"});
+  const std::string still = "[[species]]\nname = \"a\"\nlever_radius = 0.0\n";
+  expect_error<ConfigError>(
+      [&] {
+        settings<3>(sdpd + still, {"fluid.form=classical", "fluid.spin=true"});
+      },
+      {"species.0.lever_radius", "all of the fluid"});
 }
 
 }  // namespace
