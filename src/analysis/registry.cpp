@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "odpd/analysis/angular_displacement.h"
 #include "odpd/analysis/bodies.h"
 #include "odpd/analysis/contact_angle.h"
 #include "odpd/analysis/density_residual.h"
@@ -37,6 +38,7 @@ const std::vector<ObserverKind<D>>& observer_kinds() {
       {.name = "density-residual", .make = DensityResidual<D>::make},
       {.name = "rdf", .make = Rdf<D>::make},
       {.name = "msd", .make = Msd<D>::make, .of_motion = true, .always = true},
+      {.name = "rotation", .make = AngularDisplacement<D>::make, .of_motion = true},
       {.name = "heat", .make = Heat<D>::make, .of_motion = true},
       {.name = "wall-force", .make = WallForce<D>::make},
       {.name = "stress", .make = Stress<D>::make},

@@ -185,7 +185,7 @@ TEST(EveryKind, NamesWhatItGivesAndContinues) {
   std::vector<std::string> keys;
   for (const ObserverKind<2>& kind : odpd::observer_kinds<2>())
     if (const std::vector<std::string> others{"modes", "velocities", "wave", "surface-tension",
-                                              "drop", "high-frequency-viscosity"};
+                                              "drop", "high-frequency-viscosity", "rotation"};
         std::find(others.begin(), others.end(), kind.name) == others.end())
       keys.push_back("kind = \"" + kind.name + "\"\n");
   expect_named_and_continued(everything(), keys);
@@ -194,6 +194,16 @@ TEST(EveryKind, NamesWhatItGivesAndContinues) {
   plain.bodies.clear();
   expect_named_and_continued(
       plain, {"kind = \"surface-tension\"\n", "kind = \"drop\"\ncore = 1.0\nevery = 2\n"});
+  odpd::SceneSettings<2> spinning = at_rest();
+  spinning.species = {{.name = "fluid", .fraction = 0.7, .lever_radius = 0.3},
+                      {.name = "still", .fraction = 0.3}};
+  spinning.model = odpd::make_dpd<2>({.gamma_perp = 2.0}, 2);
+  expect_named_and_continued(spinning, {"kind = \"rotation\"\nwindow = 0.5\n"});
+  support::expect_error<odpd::ConfigError>(
+      [&] { WholeRun(at_rest()).make("kind = \"rotation\"\n"); }, {"kind", "lever_radius"});
+  support::expect_error<odpd::ConfigError>(
+      [&] { WholeRun(spinning).make("kind = \"rotation\"\nevery = 2\n"); },
+      {"every", "every step"});
   const std::string modes = "kind = \"modes\"\nnumbers = [1, 3]\nwindow = 0.6\n";
   expect_named_and_continued(at_rest(), {modes, modes + "control = true\n",
                                          modes + "control = true\ncontrol_every = 3\n"});

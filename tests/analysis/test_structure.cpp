@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "odpd/analysis/angular_displacement.h"
 #include "odpd/analysis/density_residual.h"
 #include "odpd/analysis/least_squares.h"
 #include "odpd/analysis/msd.h"
@@ -218,6 +219,39 @@ TYPED_TEST(StructureTest, ARandomWalkDiffuses) {
   EXPECT_GT(error, 0.015 * diffusion);
   EXPECT_LT(error, 0.06 * diffusion);
   EXPECT_NEAR(records::mean(results, "diffusion"), diffusion, 5.0 * error);
+}
+
+// The same of angles: those of the particles that spin, one component in 2D, whatever stands in the unused one.
+TYPED_TEST(StructureTest, ARandomSpinDiffuses) {
+  constexpr int D = TypeParam::D;
+  constexpr double diffusion = 0.8, dt = 0.05;
+  auto settings = records::periodic<D>(
+      4.0, support::random_points<D>(Vec<D>{}, support::uniform_vec<D>(4.0), 90, 1));
+  settings.species = {{.name = "still"}, {.name = "turning", .lever_radius = 0.5}};
+  settings.start_species.resize(90);
+  for (std::size_t i = 0; i < 90; ++i) settings.start_species[i] = i < 30 ? 0 : 1;
+  settings.model = odpd::make_dpd<D>({.gamma_perp = 1.0}, 2);
+  Scene<D> scene(settings);
+  auto& p = scene.particles();
+  odpd::AngularDisplacement<D> observer({.kind = "rotation", .name = "rotation"}, 1.0, 0.3, 2,
+                                        scene, dt);
+  const odpd::CounterRandom random(1, odpd::Stream::probe);
+  StepRecord<D> record;
+  record.w_mid.resize(90);
+  for (std::uint64_t t = 0; t < 800; ++t) {
+    for (std::size_t i = 0; i < 90; ++i) {
+      const auto w = random.normals(t, 0, static_cast<std::uint64_t>(p.id[i]), 0);
+      for (std::size_t c = 0; c < D; ++c)
+        record.w_mid[i].x[c] = p.species[i] == 0 ? 1e3 : std::sqrt(2.0 * diffusion / dt) * w[c];
+    }
+    observer.measure(Clock{}, p, record);
+    if (t % 7 == 3) p.reorder(support::random_order(p.position.size(), static_cast<unsigned>(t)));
+  }
+  const auto results = records::results(observer);
+  const double error = records::error(results, "rotation.diffusion");
+  EXPECT_GT(error, 0.015 * diffusion);
+  EXPECT_LT(error, 0.08 * diffusion);
+  EXPECT_NEAR(records::mean(results, "rotation.diffusion"), diffusion, 5.0 * error);
 }
 
 TEST(Msd, CountsTheDirectionsAskedAndEverySpecies) {
