@@ -5,32 +5,9 @@
 #include "odpd/core/index.h"
 #include "odpd/core/parallel.h"
 #include "odpd/core/room.h"
+#include "small_blocks.h"
 
 namespace odpd {
-
-namespace {
-
-// target += left^T middle right, D x D row-major.
-template <int D>
-void add_triple_product(const double* left, const double* middle, const double* right,
-                        double* target) {
-  for (std::size_t row = 0; row < D; ++row)
-    for (std::size_t k = 0; k < D; ++k)
-      for (std::size_t l = 0; l < D; ++l) {
-        const double factor = left[k * D + row] * middle[k * D + l];
-        for (std::size_t col = 0; col < D; ++col)
-          target[row * D + col] += factor * right[l * D + col];
-      }
-}
-
-template <int D>
-Vec<D> vector_at(std::span<const double> x, std::size_t node) {
-  Vec<D> v;
-  for (std::size_t c = 0; c < D; ++c) v.x[c] = x[node * D + c];
-  return v;
-}
-
-}  // namespace
 
 template <int D>
 void RigidResistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs,

@@ -1,6 +1,7 @@
 #pragma once
-// D x D blocks, row-major.
+// D x D blocks, row-major, and entries of vectors of nodes.
 #include <array>
+#include <span>
 
 #include "odpd/core/index.h"
 #include "odpd/core/rotation.h"
@@ -9,6 +10,26 @@ namespace odpd {
 
 template <int D>
 using SmallBlock = std::array<double, index(D* D)>;
+
+// target += left^T middle right.
+template <int D>
+void add_triple_product(const double* left, const double* middle, const double* right,
+                        double* target) {
+  for (std::size_t row = 0; row < D; ++row)
+    for (std::size_t k = 0; k < D; ++k)
+      for (std::size_t l = 0; l < D; ++l) {
+        const double factor = left[k * D + row] * middle[k * D + l];
+        for (std::size_t col = 0; col < D; ++col)
+          target[row * D + col] += factor * right[l * D + col];
+      }
+}
+
+template <int D>
+Vec<D> vector_at(std::span<const double> x, std::size_t node) {
+  Vec<D> v;
+  for (std::size_t c = 0; c < D; ++c) v.x[c] = x[node * D + c];
+  return v;
+}
 
 // E with E w = e x w: row-major.
 template <int D>

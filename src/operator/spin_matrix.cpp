@@ -46,9 +46,11 @@ const BlockCsr& SpinResistance<D>::matrix() const {
     }
   const auto add = [&](const Parts& left, const Parts& right, const Block& block) {
     for (const auto& [row, of_row] : left)
-      for (const auto& [column, of_column] : right)
-        rows[index(row)].push_back(
-            {column, product_of<D>(product_of<D>(of_row, block, true), of_column, false)});
+      for (const auto& [column, of_column] : right) {
+        rows[index(row)].push_back({column, {}});
+        add_triple_product<D>(of_row.data(), block.data(), of_column.data(),
+                              rows[index(row)].back().second.data());
+      }
   };
   Parts v, w, v_other, w_other;
   for (std::size_t row = 0; row < spin_of_.size(); ++row) {

@@ -15,17 +15,6 @@
 
 namespace odpd {
 
-namespace {
-
-template <int D>
-Vec<D> entry_of(std::span<const double> x, std::size_t node) {
-  Vec<D> v;
-  for (std::size_t c = 0; c < D; ++c) v.x[c] = x[node * D + c];
-  return v;
-}
-
-}  // namespace
-
 template <int D>
 void SpinResistance<D>::rebuild(const PairNetwork<D>& network, const DofMap<D>& dofs,
                                 const Particles<D>& particles, std::span<const Vec<D>> positions,
@@ -171,7 +160,7 @@ Vec<D> SpinResistance<D>::turning_of(std::span<const double> u) const {
   Eigen::Matrix<double, parts, 1> moment = Eigen::Matrix<double, parts, 1>::Zero();
   for (std::size_t row = 0; row < index(mobile.nodes()); ++row)
     for (const auto& link : mobile.links(row)) {
-      const Vec<D> here = entry_of<D>(u, row), there = entry_of<D>(u, index(link.node));
+      const Vec<D> here = vector_at<D>(u, row), there = vector_at<D>(u, index(link.node));
       if (!mobile.ties(link) || (here == Vec<D>{} && there == Vec<D>{})) continue;
       const Vec<D> d =
           mobile.box().separation(mobile.position(row), mobile.position(index(link.node)));
@@ -222,7 +211,7 @@ void SpinResistance<D>::find_null_motions() {
       v = velocity_;
     }
     const Vec<D> w = turning_of(v);
-    const auto moves = [&](std::size_t row) { return entry_of<D>(v, row) != Vec<D>{}; };
+    const auto moves = [&](std::size_t row) { return vector_at<D>(v, row) != Vec<D>{}; };
     for (std::size_t row = 0; row < spin_of_.size(); ++row) {
       if (spin_of_[row] < 0) continue;
       const auto around = mobile.links(row);
@@ -303,13 +292,13 @@ void SpinResistance<D>::apply(std::span<const double> x, std::span<double> y) co
   torque_.resize(index(mobile));
   parallel_for(mobile, [&](std::int64_t particle) {
     const auto row = index(particle);
-    const Vec<D> own = entry_of<D>(v, row);
+    const Vec<D> own = vector_at<D>(v, row);
     Vec<D> force{}, moment{};
     for (const Link& link : links(row)) {
       Vec<D> turning = link.own * spin_[row], slip = own;
       if (link.other >= 0) {
         turning += link.theirs * spin_[index(link.other)];
-        slip -= entry_of<D>(v, index(link.other));
+        slip -= vector_at<D>(v, index(link.other));
       }
       const Vec<D> s = -link.zeta_perp * swing(turning, link.e);
       force += s;
