@@ -23,17 +23,16 @@ std::vector<std::size_t> spinning(const std::vector<SpeciesSettings>& species) {
 }  // namespace
 
 template <int D>
-AngularDisplacement<D>::AngularDisplacement(ObserverSettings settings, double window,
-                                            double fit_from, std::int64_t steps,
-                                            const Scene<D>& scene, double dt)
+AngularDisplacement<D>::AngularDisplacement(ObserverSettings settings, const LagRange& lags,
+                                            std::int64_t steps, const Scene<D>& scene, double dt)
     : Observer<D>(std::move(settings)),
-      window_(window),
+      window_(lags.window),
       dt_(dt),
       steps_(steps),
       scene_(scene),
       species_(spinning(scene.settings().species)),
-      displacements_(this->settings().name, window, fit_from, dt * static_cast<double>(steps),
-                     species_.size()) {
+      displacements_(this->settings().name, lags.window, lags.fit_from,
+                     dt * static_cast<double>(steps), species_.size()) {
   scene.particles().carry(column());
 }
 
@@ -47,10 +46,7 @@ std::unique_ptr<Observer<D>> AngularDisplacement<D>::make(const ObserverEntry<D>
   ObserverSettings settings = entry.settings();
   if (settings.every != 1)
     config.fail("every", "angular velocities are summed up, so every step counts: leave it out");
-  const double window = config.positive("window", 3.0);
-  const double fit_from = config.non_negative("fit_from", window / 3.0);
-  if (fit_from >= window) config.fail("fit_from", "must be less than window");
-  return std::make_unique<AngularDisplacement<D>>(std::move(settings), window, fit_from,
+  return std::make_unique<AngularDisplacement<D>>(std::move(settings), read_lags(config),
                                                   msd_interval(entry.clock), entry.scene,
                                                   entry.clock.dt);
 }
@@ -105,20 +101,9 @@ void AngularDisplacement<D>::add_results(Results& results) const {
                     this->settings().name, window_));
     return;
   }
-  Table table;
-  table.columns = {"lag"};
-  for (std::int64_t lag = 0; lag < displacements_.lags(); ++lag)
-    table.rows.push_back({displacements_.lag(lag)});
-  for (std::size_t k = 0; k < kinds; ++k) {
-    const std::string& name = scene_.settings().species[species_[k]].name;
-    table.columns.insert(table.columns.end(), {"msd_" + name, "msd_" + name + "_error"});
-    const BlockAverage& curve = displacements_.curve();
-    for (std::size_t lag = 0; lag < table.rows.size(); ++lag) {
-      const std::size_t at = lag * kinds + k;
-      table.rows[lag].insert(table.rows[lag].end(), {curve.mean(at), curve.standard_error(at)});
-    }
-  }
-  results.tables.emplace_back(this->settings().name, std::move(table));
+  std::vector<std::string> names;
+  for (const std::size_t a : species_) names.push_back(scene_.settings().species[a].name);
+  results.tables.emplace_back(this->settings().name, displacements_.table(names));
 }
 
 template <int D>

@@ -74,6 +74,20 @@ void Displacements::finish_window(std::span<const double> population, std::size_
   newest_ = value;
 }
 
+Table Displacements::table(std::span<const std::string> kinds) const {
+  Table t;
+  t.columns = {"lag"};
+  for (std::int64_t k = 0; k < lags_; ++k) t.rows.push_back({lag(k)});
+  for (std::size_t a = 0; a < kinds.size(); ++a) {
+    t.columns.insert(t.columns.end(), {"msd_" + kinds[a], "msd_" + kinds[a] + "_error"});
+    for (std::size_t k = 0; k < t.rows.size(); ++k) {
+      const std::size_t column = k * kinds_ + a;
+      t.rows[k].insert(t.rows[k].end(), {curve_.mean(column), curve_.standard_error(column)});
+    }
+  }
+  return t;
+}
+
 void Displacements::save(StateWriter& out, const std::string& prefix) const {
   out.write(prefix + "lag", std::vector<std::int64_t>{lag_});
   out.write(prefix + "begun", std::vector<std::int64_t>{begun_ ? 1 : 0});

@@ -15,9 +15,9 @@ MsdSettings read_msd(const ObserverEntry<D>& entry) {
   const Config& config = entry.config;
   const Scene<D>& scene = entry.scene;
   MsdSettings m;
-  m.window = config.positive("window", 3.0);
-  m.fit_from = config.non_negative("fit_from", m.window / 3.0);
-  if (m.fit_from >= m.window) config.fail("fit_from", "must be less than window");
+  const LagRange lags = read_lags(config);
+  m.window = lags.window;
+  m.fit_from = lags.fit_from;
   // Along a bounded direction displacements saturate; along a moving wall or a force they are advection.
   std::vector<int> fallback;
   for (int c = 0; c < D; ++c)
@@ -98,7 +98,6 @@ void Msd<D>::add_results(Results& results) const {
   // The default observer's names carry no prefix: every run has them.
   const std::string prefix = this->settings().name == "msd" ? "" : this->named("");
   const BlockAverage& diffusion = displacements_.diffusion();
-  const BlockAverage& msd = displacements_.curve();
   const auto& species = scene_.settings().species;
   results.scalars.push_back(
       {prefix + "diffusion", diffusion.mean(species_), diffusion.standard_error(species_)});
@@ -117,23 +116,18 @@ void Msd<D>::add_results(Results& results) const {
       results.notes.push_back(fmt::format(
           "{}: displacements and diffusion of '{}' are undefined: it has no free particles",
           this->settings().name, species[a].name));
-  Table table;
-  table.columns = {"lag"};
+  std::vector<std::string> names;
+  for (const auto& s : species) names.push_back(s.name);
+  Table table = displacements_.table(names);
   Chart chart{.title = "Mean-square displacement",
               .x_label = "lag",
               .y_label = "msd / r_c^2",
               .curves = {}};
-  for (std::int64_t lag = 0; lag < displacements_.lags(); ++lag)
-    table.rows.push_back({displacements_.lag(lag)});
   for (std::size_t a = 0; a < species_; ++a) {
-    table.columns.insert(table.columns.end(),
-                         {"msd_" + species[a].name, "msd_" + species[a].name + "_error"});
-    Curve curve{.title = species[a].name, .x = {}, .y = {}, .error = {}};
-    for (std::size_t lag = 0; lag < index(displacements_.lags()); ++lag) {
-      const std::size_t column = lag * species_ + a;
-      table.rows[lag].insert(table.rows[lag].end(), {msd.mean(column), msd.standard_error(column)});
-      curve.x.push_back(table.rows[lag][0]);
-      curve.y.push_back(msd.mean(column));
+    Curve curve{.title = names[a], .x = {}, .y = {}, .error = {}};
+    for (const std::vector<double>& row : table.rows) {
+      curve.x.push_back(row[0]);
+      curve.y.push_back(row[1 + 2 * a]);
     }
     chart.curves.push_back(std::move(curve));
   }

@@ -95,6 +95,14 @@ double read_r_max(const ObserverEntry<D>& entry, bool far) {
   return r_max;
 }
 
+LagRange read_lags(const Config& config) {
+  LagRange lags{};
+  lags.window = config.positive("window", 3.0);
+  lags.fit_from = config.non_negative("fit_from", lags.window / 3.0);
+  if (lags.fit_from >= lags.window) config.fail("fit_from", "must be less than window");
+  return lags;
+}
+
 ControlKeys read_control(const Config& config, double window, double dt) {
   ControlKeys control;
   if (!config.boolean("control", false)) return control;

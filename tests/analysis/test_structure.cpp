@@ -233,7 +233,7 @@ TYPED_TEST(StructureTest, ARandomSpinDiffuses) {
   settings.model = odpd::make_dpd<D>({.gamma_perp = 1.0}, 2);
   Scene<D> scene(settings);
   auto& p = scene.particles();
-  odpd::AngularDisplacement<D> observer({.kind = "rotation", .name = "rotation"}, 1.0, 0.3, 2,
+  odpd::AngularDisplacement<D> observer({.kind = "rotation", .name = "rotation"}, {1.0, 0.3}, 2,
                                         scene, dt);
   const odpd::CounterRandom random(1, odpd::Stream::probe);
   StepRecord<D> record;

@@ -7,14 +7,15 @@
 // gives a mean. For short windows D_r is kT times the mobility by a torque (analysis/mobility.h).
 #include "odpd/analysis/displacements.h"
 #include "odpd/analysis/observer.h"
+#include "odpd/analysis/observer_keys.h"
 
 namespace odpd {
 
 template <int D>
 class AngularDisplacement : public Observer<D> {
  public:
-  /// window, fit_from: as of Displacements, which takes a sample every `steps` steps of dt.
-  AngularDisplacement(ObserverSettings settings, double window, double fit_from, std::int64_t steps,
+  /// Displacements takes a sample every `steps` steps of dt.
+  AngularDisplacement(ObserverSettings settings, const LagRange& lags, std::int64_t steps,
                       const Scene<D>& scene, double dt);
   /// Reads window and fit_from. Throws ConfigError, also where nobody spins.
   static std::unique_ptr<Observer<D>> make(const ObserverEntry<D>& entry);

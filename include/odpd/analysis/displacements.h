@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "odpd/analysis/block_average.h"
+#include "odpd/core/table.h"
 
 namespace odpd {
 
@@ -38,6 +39,8 @@ class Displacements {
   double lag(std::int64_t k) const { return lag_time_ * static_cast<double>(k + 1); }
   /// By lag * kinds + kind.
   const BlockAverage& curve() const { return curve_; }
+  /// lag, and of each kind, by their names, the mean-square displacement and its standard error.
+  Table table(std::span<const std::string> kinds) const;
   /// D of each kind, then of all entities; a sample per window.
   const BlockAverage& diffusion() const { return diffusion_; }
   /// The newest sample of `diffusion`.

@@ -25,6 +25,13 @@ bool flows_along(const Scene<D>& scene, int direction);
 template <int D>
 std::vector<int> read_directions(const Config& config, const std::vector<int>& fallback);
 
+/// Lags of mean-square displacements: the longest, and the shortest of the slope (time).
+struct LagRange {
+  double window, fit_from;
+};
+/// `window` (3) and `fit_from` (a third of it).
+LagRange read_lags(const Config& config);
+
 /// `bins`, D counts; by default cells near 1 wide, at least `fewest` in every direction.
 template <int D>
 typename Grid<D>::Counts read_cells(const ObserverEntry<D>& entry, double fewest = 1.0);
