@@ -229,7 +229,8 @@ double BlowUpWatch<D>::friction_limit(const IntegratorSettings& integrator,
   return turning > 0.0 ? std::min(linear, 1.0 / turning) : linear;
 }
 
-// The mean rate at which friction stops spins, l^2 zeta_perp over the moment of inertia; 0 where nobody has one.
+// The largest rate at which friction stops a spin, l^2 zeta_perp over the moment of inertia; 0 where nobody has one. (A mean would not
+// do: that of a particle in a dense place goes as the square of the distances there.)
 template <int D>
 double BlowUpWatch<D>::spin_relaxation(const Stage<D>& stage) const {
   const Particles<D>& particles = scene_.particles();
@@ -237,21 +238,21 @@ double BlowUpWatch<D>::spin_relaxation(const Stage<D>& stage) const {
   const Share own = particles.owned();
   // Of e x, over the components of a spin.
   constexpr double across = static_cast<double>(D - 1) / rotation_components<D>;
-  std::array<double, 2> sum{};  // of rates, of spins
+  double largest = 0.0;
   for (auto i = index(own.first); i < index(own.last) && !network.lever_i.empty(); ++i) {
     if (!particles.spins(i)) continue;
     const double moment = particles.spin_of_species[index(particles.species[i])].moment;
     if (moment == 0.0) continue;
+    double rate = 0.0;
     for (const std::int32_t edge : network.edges_of(static_cast<std::int64_t>(i))) {
       const auto k = index(edge);
       const double arm =
           network.i[k] == static_cast<std::int32_t>(i) ? network.lever_i[k] : network.lever_j[k];
-      sum[0] += across * network.zeta_perp[k] * arm * arm / moment;
+      rate += across * network.zeta_perp[k] * arm * arm / moment;
     }
-    sum[1] += 1.0;
+    largest = std::max(largest, rate);
   }
-  own.ranks->sum(std::span(sum));
-  return sum[1] > 0.0 ? sum[0] / sum[1] : 0.0;
+  return own.ranks->largest(largest);
 }
 
 template <int D>
@@ -278,11 +279,12 @@ std::string BlowUpWatch<D>::cure(const IntegratorSettings& integrator, const Sta
         dt, *repulsion, scene_.settings().mass > 0.0 ? "; or 0.1 sqrt(m/k)" : ""));
   const double inertia = friction_limit(integrator, stage);
   if (dt > inertia)
-    causes.push_back(
-        fmt::format("integrator.dt = {} is beyond {:.2g} = m/(friction of a particle), the limit "
-                    "of '{}' (not of "
-                    "trapezoidal or shardlow)",
-                    dt, inertia, integrator.name));
+    causes.push_back(fmt::format(
+        "integrator.dt = {} is beyond {:.2g} = m/(friction of a particle){}, the limit "
+        "of '{}' (not of "
+        "trapezoidal or shardlow)",
+        dt, inertia, stage.network.lever_i.empty() ? "" : " or I/(friction of its spin)",
+        integrator.name));
   if (particle >= 0 && !stage.network.start.empty()) {
     const auto i = scene_.particles().index_of_id()[index(particle)];
     const std::size_t neighbours = stage.network.edges_of(i).size();

@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "odpd/app/blow_up.h"
 #include "odpd/core/random.h"
 #include "odpd/operator/edge_sums.h"
 #include "odpd/pairs/dpd.h"
+#include "odpd/pairs/levers.h"
 #include "odpd/scene/fill.h"
 #include "support/pair_functions.h"
 #include "support/points.h"
@@ -263,6 +265,40 @@ TEST(BlowUpCure, InertiaOfExplicitFriction) {
   const double limit = settings.mass / friction;
   EXPECT_NE(watch.cure(integrator, stage, 2.0 * limit, -1).find("m/(friction"), std::string::npos);
   EXPECT_EQ(watch.cure(integrator, stage, 0.9 * limit, -1).find("m/(friction"), std::string::npos);
+}
+
+// Of a spin it is I/(sum of l^2 zeta_perp), the smaller one where levers are long for the moment of inertia.
+TEST(BlowUpCure, InertiaOfSpins) {
+  SceneSettings<2> settings = box_of<2>(StartKind::lattice);
+  settings.mass = 1.0;
+  settings.model = make_dpd<2>({.gamma_perp = 3.0});
+  IntegratorSettings integrator;
+  integrator.name = "velocity-verlet";
+  const auto limit = [&](double moment) {
+    settings.species[0].lever_radius = 0.3;
+    settings.species[0].moment = moment;
+    Scene<2> scene(settings);
+    Stage<2> stage = stage_of(scene);
+    write_levers(scene.particles(), stage.network);
+    const BlowUpWatch<2> watch(scene, 10.0);
+    double friction = 0.0;  // of the one with most
+    for (std::int64_t i = 0; i < scene.particles().size(); ++i) {
+      double own = 0.0;  // the lever arm is half the distance
+      for (const std::int32_t edge : stage.network.edges_of(i)) {
+        const auto k = static_cast<std::size_t>(edge);
+        own += 0.25 * stage.network.r[k] * stage.network.r[k] * stage.network.zeta_perp[k];
+      }
+      friction = std::max(friction, own);
+    }
+    const auto told = [&](double dt) {
+      return watch.cure(integrator, stage, dt, -1).find("I/(friction of its spin)") !=
+             std::string::npos;
+    };
+    EXPECT_TRUE(told(1.01 * moment / friction));
+    EXPECT_EQ(told(0.99 * moment / friction), moment > 0.1);
+  };
+  limit(1e-3);
+  limit(1e3);  // that of m, smaller by far
 }
 
 TEST(BlowUpCure, RattlersAreNamed) {

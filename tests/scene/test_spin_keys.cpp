@@ -55,6 +55,23 @@ TEST(SpinKeys, ASpeciesTakesThoseOfTheFluidOrItsOwn) {
             "inertia 1.6)");
 }
 
+// Without noise all turn at the start as the sheared flow does: v_x = rate y has half the curl -rate/2.
+TEST(SpinKeys, StartTurningAsAShearedFlowDoes) {
+  const odpd::Scene<3> scene(settings<3>(
+      spinning +
+          "lever_radius = 0.5\nmass = 1.0\n[shear]\nflow = \"x\"\ngradient = \"y\"\nrate = 0.8\n",
+      {"fluid.kT=0.0"}));
+  const odpd::Particles<3>& particles = scene.particles();
+  ASSERT_EQ(particles.end_spin.size(), particles.position.size());
+  for (std::size_t i = 0; i < particles.end_spin.size(); ++i) {
+    EXPECT_NEAR(particles.end_spin[i][2], -0.4, 1e-14);
+    EXPECT_EQ(particles.end_spin[i][0], 0.0);
+    // The velocity of a neighbour a little up the gradient is the other reading of the same rate.
+    EXPECT_NEAR(particles.end_velocity[i][0],
+                0.8 * (particles.position[i][1] - 0.5 * scene.box().size[1]), 1e-9);
+  }
+}
+
 TEST(SpinKeys, FrozenParticlesHaveNoSpinOfTheirOwn) {
   const odpd::Scene<2> scene(
       settings<2>(cases::channel, {"fluid.gamma_perp=2.0", "fluid.lever_radius=0.5"}));
