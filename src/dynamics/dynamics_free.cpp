@@ -50,7 +50,10 @@ void Dynamics<D>::judge_null_motions(const Stage<D>& stage) {
   for (const FreeGroup& group : groups.first(std::min(groups.size(), most_named)))
     who += (who.empty() ? "" : "; ") + told(group);
   if (groups.size() > most_named) who += fmt::format("; and {} more", groups.size() - most_named);
-  const std::string why = ", as friction along lines of centres does not resist that";
+  const std::string why =
+      motion_.dofs().any_spin()
+          ? ", as friction of particles that turn with them does not resist that"
+          : ", as friction along lines of centres does not resist that";
   if (box_.shear)
     throw SolverError(
         who + why +

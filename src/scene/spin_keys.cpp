@@ -76,7 +76,7 @@ void check_spins(const Config& config, const SceneSettings<D>& scene) {
             .fail("gamma_perp",
                   "friction across lines of centres turns pairs, and where particles do not spin "
                   "nothing takes that up: angular momentum is lost and the stress is not "
-                  "symmetric (2.45 in yx, 0.00 in xy of the same flow). Let them spin with "
+                  "symmetric (docs/spin.md). Let them spin with "
                   "fluid.lever_radius, as 0.5, or insist with fluid.antisymmetric_stress = true");
     }
     // Of particles alone: those of walls and bodies have no edges among themselves.

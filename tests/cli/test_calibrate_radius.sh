@@ -68,6 +68,28 @@ expect_error 1 "$odpd" calibrate disks --radius --eta 5.0 -- --radius --eta
 expect_error 1 "$odpd" calibrate disks --boxes 4 -- --boxes --radius
 expect_error 1 "$odpd" calibrate disks --radius --find cutoff -- --find --wanted
 expect_error 1 "$odpd" calibrate disks --radius --find cutoff --wanted 0.5 -- "key 'pair'" "there is no [[pair]] of 'fluid' with the fluid"
+# Two kinds of colloids: a [[pair]] of the two is none with the fluid.
+sed -e '/^\[\[body\]\]/,$d' disks/case.toml >two.toml
+cat >>two.toml <<'CASE'
+[[species]]
+name = "solvent"
+[[species]]
+name = "small"
+count = 0
+[[species]]
+name = "large"
+count = 0
+[[pair]]
+species = ["large", "small"]
+cutoff = 0.8
+[[molecule]]
+name = "ball"
+species = "small"
+shape = "particle"
+count = 1
+clearance = 1.0
+CASE
+expect_error 1 "$odpd" calibrate two.toml --radius --find cutoff --wanted 0.5 -- "key 'pair'" "there is no [[pair]] of 'small' with the fluid"
 expect_error 1 "$odpd" run disks --dry-run --set body.0.hydrodynamic_radius=-1.0 -- body.0.hydrodynamic_radius positive
 expect_error 1 "$odpd" run disks --dry-run --set body.0.hydrodynamic_radius=3.0 -- body.0.hydrodynamic_radius 28.2743 'odpd calibrate --radius'
 expect_error 1 "$odpd" run disks --dry-run --set body.0.excluded_volume=25.0 -- body.0.excluded_volume 'of the 25 of space'

@@ -1,5 +1,5 @@
 #pragma once
-// Random fluids of particles that spin, with friction across the edges.
+// Random fluids of particles that spin, frozen: an operator at one configuration. (Moving ones: spinning.h.)
 #include <algorithm>
 #include <cmath>
 

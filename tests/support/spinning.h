@@ -1,5 +1,6 @@
 #pragma once
-// Particles of several lever radii, at random places.
+// Particles of several lever radii at random places that move: with a Dynamics of their own, for integrators. (Frozen ones, for
+// operators and solvers: spin_fluid.h.)
 #include <memory>
 #include <optional>
 #include <vector>
